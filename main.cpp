@@ -1,16 +1,10 @@
 // The program: registers each folder's commands, maps errors to exit codes, nothing else.
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <csignal>
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "analytic/command/exact_command.hpp"
 #include "bench/commands.hpp"

@@ -1,10 +1,7 @@
 #include "analytic/approximations.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
-#include <string_view>
 
 #include "analytic/out_of_range.hpp"
 #include "analytic/paper_equations.hpp"

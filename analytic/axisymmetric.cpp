@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/elliptic_series.hpp"

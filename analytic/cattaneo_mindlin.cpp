@@ -1,9 +1,5 @@
 #include "analytic/cattaneo_mindlin.hpp"
 
-#include <fmt/core.h>
-
-#include <cmath>
-
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"
 

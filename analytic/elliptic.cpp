@@ -4,7 +4,6 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/elliptic_series.hpp"

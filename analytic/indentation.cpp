@@ -1,10 +1,8 @@
 #include "analytic/indentation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "analytic/elliptic.hpp"

@@ -3,9 +3,7 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <string_view>
 
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"

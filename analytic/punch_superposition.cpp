@@ -1,9 +1,6 @@
 #include "analytic/punch_superposition.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>

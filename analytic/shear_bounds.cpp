@@ -1,9 +1,6 @@
 #include "analytic/shear_bounds.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 

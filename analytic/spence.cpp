@@ -1,13 +1,8 @@
 #include "analytic/spence.hpp"
 
-#include <fmt/core.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"

@@ -1,10 +1,6 @@
 #include "analytic/tangential_history.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"

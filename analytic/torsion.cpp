@@ -1,11 +1,7 @@
 #include "analytic/torsion.hpp"
 
-#include <fmt/core.h>
-
-#include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"

@@ -1,14 +1,10 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <ctime>
-#include <filesystem>
 #include <memory>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "bench/commands.hpp"
 #include "bench/compare/ab_run.hpp"

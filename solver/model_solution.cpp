@@ -1,8 +1,5 @@
 #include "solver/model_solution.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numbers>
 #include <utility>
 

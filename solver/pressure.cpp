@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,9 +1,5 @@
 #include "solver/resolution.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "solver/grid/sweep.hpp"

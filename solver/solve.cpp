@@ -1,10 +1,8 @@
 #include "solver/solve.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "solver/contact/full_coupling.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <map>
-#include <optional>
 #include <stdexcept>
 
 #include "analytic/certified/ball_contact.hpp"

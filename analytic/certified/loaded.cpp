@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <stdexcept>
-
 #include "analytic/certified/certified.hpp"
 #include "cmake/loaded_library.hpp"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/gsl.hpp"
 #include "analytic/layered/fredholm.hpp"

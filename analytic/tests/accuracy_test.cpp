@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <map>
 #include <numbers>
 #include <set>
-#include <string>
 
 #include "analytic/references/replay.hpp"
 

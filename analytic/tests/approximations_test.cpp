@@ -1,7 +1,5 @@
 #include "analytic/approximations.hpp"
 
-#include <gtest/gtest.h>
-
 #include <stdexcept>
 
 #include "analytic/paper_equations.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/tests/values.hpp"

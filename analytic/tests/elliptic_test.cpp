@@ -1,9 +1,5 @@
 #include "analytic/elliptic.hpp"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include "analytic/references/references.hpp"
 #include "analytic/tests/values.hpp"
 

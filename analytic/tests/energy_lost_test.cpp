@@ -1,7 +1,5 @@
 // Energy lost in cycles of the twisting moment.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "analytic/cycle.hpp"

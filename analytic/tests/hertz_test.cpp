@@ -1,7 +1,5 @@
 #include "analytic/indentation.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <stdexcept>
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
-#include <string>
 
 #include "analytic/tests/values.hpp"
 

@@ -2,10 +2,6 @@
 // formulas, closed, superposed or interpolated.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <vector>
 
 #include "analytic/punch_superposition.hpp"
 #include "analytic/shear_bounds.hpp"

@@ -3,12 +3,10 @@
 #include <stdlib.h>
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
-#include <string>
 
 #include "analytic/tabulated_pressure.hpp"
 #include "analytic/torsion.hpp"

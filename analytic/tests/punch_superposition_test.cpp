@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <stdexcept>
-#include <vector>
-
 #include "analytic/references/references.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"

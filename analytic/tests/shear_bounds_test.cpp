@@ -2,10 +2,6 @@
 // range of loads.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/references/references.hpp"

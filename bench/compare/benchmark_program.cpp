@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <sstream>
-#include <stdexcept>
-#include <string_view>
 
 #include "bench/timing/timings.hpp"
 #include "convergence/programs/temporary_folder.hpp"

@@ -4,8 +4,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <stdexcept>
-#include <string>
 
 #include "bench/commands.hpp"
 #include "bench/compare/comparison.hpp"

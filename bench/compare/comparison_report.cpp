@@ -6,9 +6,6 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/result_parts.hpp"

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <vector>
 
 #include "bench/plane/envelope.hpp"
 #include "bench/plane/speed_error.hpp"

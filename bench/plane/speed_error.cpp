@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 
 #include "bench/timing/checked_solve.hpp"

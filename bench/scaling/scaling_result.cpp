@@ -8,9 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "convergence/orders/growth.hpp"
 #include "convergence/results/result_parts.hpp"

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "analytic/references/replay.hpp"
 #include "bench/suite/suite.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "analytic/gsl.hpp"
 #include "bench/suite/suite.hpp"

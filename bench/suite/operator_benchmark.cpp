@@ -1,15 +1,11 @@
 // The tangential operator in each of its forms: setting it up, and one application, beside the error against
 // another form and the memory held. Bare padded transforms bound dcfft's time from below.
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <memory>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "bench/suite/four_transforms.hpp"
 #include "bench/suite/suite.hpp"

@@ -1,14 +1,10 @@
 // The program. Names read family/variant/cells:N; each time stands beside the error that it buys, and what is
 // wrong is reported and not timed. Benchmarks named long/... run only where a filter asks for them.
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
-#include <string>
-#include <vector>
 
 #include "bench/suite/suite.hpp"
 #include "convergence/results/provenance.hpp"

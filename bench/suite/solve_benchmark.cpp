@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"

@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <memory>
-#include <stdexcept>
 
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"

@@ -4,13 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "bench/work/work_counts_cases.hpp"
 #include "bench/work/work_counts_instructions.hpp"

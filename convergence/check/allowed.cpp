@@ -1,10 +1,9 @@
-#include "convergence/check/allowed.hpp"
+#include "convergence/check/verdict.hpp"
 #include "solver/contact/fitted_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace slipstick::convergence {
 namespace {

@@ -156,41 +156,6 @@ std::string headline(const Examination& e, const Verdict& verdict, const CheckOp
   return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.headline);
 }
 
-}  // namespace
-
-Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
-  const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
-  const Verdict verdict = reach_verdict(e, options.tolerance);
-  const solver::StickFront stick = stick_front_of(e);
-  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
-  const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
-  Json json;
-  json["name"] = scene.name;
-  json["field"] = file.string();
-  json["verdict"] = good ? "good" : "bad";
-  json["headline"] = headline(e, verdict, options);
-  json["details"] = verdict.details;
-  json["why"] = json["headline"].get<std::string>() + (verdict.details.empty() ? "" : "; " + verdict.details);
-  json["pressure_given"] = options.pressure_given;
-  json["within_mesh"] = verdict.within_mesh();
-  json["discrete"]["holds"] = verdict.discrete.holds();
-  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds mu p: there is no gap");
-  set_number(json["discrete"], "allowed", verdict.discrete.allowed, kBroken);
-  add_field(json, e);
-  add_state(json, e, stick);
-  add_errors(json, e, stick);
-  json["certificate"] = certificate_json(e.certificate, kBroken);
-  set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
-  set_number(json["slip_direction"], "max", e.direction.max, kBroken);
-  json["yardstick"] = reference_json(e);
-  json["judged"] = judged_json(verdict.judged);
-  if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
-  json["provenance"] = provenance(std::max(1, scene.threads));
-  return json;
-}
-
-namespace {
-
 std::string field_text(const Json& r) {
   std::string text = text_line("field", r["field"].get<std::string>());
   text += text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick",
@@ -244,6 +209,37 @@ std::string certificate_text(const Json& r) {
 }
 
 }  // namespace
+
+Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
+  const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
+  const Verdict verdict = reach_verdict(e, options.tolerance);
+  const solver::StickFront stick = stick_front_of(e);
+  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
+  const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
+  Json json;
+  json["name"] = scene.name;
+  json["field"] = file.string();
+  json["verdict"] = good ? "good" : "bad";
+  json["headline"] = headline(e, verdict, options);
+  json["details"] = verdict.details;
+  json["why"] = json["headline"].get<std::string>() + (verdict.details.empty() ? "" : "; " + verdict.details);
+  json["pressure_given"] = options.pressure_given;
+  json["within_mesh"] = verdict.within_mesh();
+  json["discrete"]["holds"] = verdict.discrete.holds();
+  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds mu p: there is no gap");
+  set_number(json["discrete"], "allowed", verdict.discrete.allowed, kBroken);
+  add_field(json, e);
+  add_state(json, e, stick);
+  add_errors(json, e, stick);
+  json["certificate"] = certificate_json(e.certificate, kBroken);
+  set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
+  set_number(json["slip_direction"], "max", e.direction.max, kBroken);
+  json["yardstick"] = reference_json(e);
+  json["judged"] = judged_json(verdict.judged);
+  if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
+  json["provenance"] = provenance(std::max(1, scene.threads));
+  return json;
+}
 
 std::string check_text(const Json& r) {
   std::vector<std::string> taken;

@@ -4,16 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"
 #include "convergence/check/loops/loop_judgement.hpp"
-#include "convergence/check/loops/loop_record.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -95,9 +90,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
       "0: good; 1: bad; 2: cannot be judged. docs/guides/verify-your-solver.md explains each number.");
-  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_check(*command, *request, text, result);
-  };
+  return running(command, request, run_check);
 }
 
 }  // namespace slipstick::convergence

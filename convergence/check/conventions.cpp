@@ -1,9 +1,8 @@
-#include "convergence/check/conventions.hpp"
+#include "convergence/check/foreign_field.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -37,6 +37,47 @@ double motion_error(const GivenContact& c, const RightAnswer& right, const State
          std::max(size(expected), size(c.displacement));
 }
 
+/// |q| over a bound, less 1, in the slip ring, in order; empty where hardly any cell slips.
+std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right) {
+  const std::vector<Index> ring = slip_ring(contact, right);
+  if (ring.size() < kMinSlipping) return {};
+  const ArrayXd size = solver::norms(contact.traction);
+  std::vector<double> excess;
+  for (const Index cell : ring) excess.push_back(size[cell] / bound[cell] - 1.0);
+  std::ranges::sort(excess);
+  return excess;
+}
+
+/// The median of an ordered excess, and the spread between its quartiles.
+struct Plateau {
+  explicit Plateau(const std::vector<double>& excess)
+      : middle(excess[excess.size() / 2]),
+        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
+
+  double middle;
+  double spread;
+};
+
+/// Another law, whose bound under its unit coefficient or strength is given, where the ring follows it.
+std::optional<OtherFriction> other_law(const GivenContact& contact, const RightAnswer& right,
+                                       solver::FrictionKind kind) {
+  constexpr double kFollows = 0.02;  // spread between the quartiles, over |q| itself
+  solver::FrictionLaw law = 1.0;
+  law.kind = kind;
+  law.shear_strength = 1.0;
+  const ArrayXd unit = law.bound(contact.pressure);
+  const Plateau shown(ring_excess(contact, unit, right));
+  const double factor = 1.0 + shown.middle;
+  if (kind == contact.friction.kind || !(shown.spread <= kFollows * factor)) return std::nullopt;
+  const std::string name =
+      kind == solver::FrictionKind::tresca
+          ? fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", factor * contact.stress_unit)
+          : fmt::format("Coulomb's law, with a coefficient of {:.4g},", factor);
+  return OtherFriction{
+      fmt::format("{} in place of friction_law = \"{}\"", name, solver::to_string(contact.friction.kind)),
+      factor * unit};
+}
+
 }  // namespace
 
 void scale_loads(solver::TangentialProblem& problem, double factor) {
@@ -96,51 +137,6 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
   }
   return cells;
 }
-
-namespace {
-
-/// |q| over a bound, less 1, in the slip ring, in order; empty where hardly any cell slips.
-std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right) {
-  const std::vector<Index> ring = slip_ring(contact, right);
-  if (ring.size() < kMinSlipping) return {};
-  const ArrayXd size = solver::norms(contact.traction);
-  std::vector<double> excess;
-  for (const Index cell : ring) excess.push_back(size[cell] / bound[cell] - 1.0);
-  std::ranges::sort(excess);
-  return excess;
-}
-
-/// The median of an ordered excess, and the spread between its quartiles.
-struct Plateau {
-  explicit Plateau(const std::vector<double>& excess)
-      : middle(excess[excess.size() / 2]),
-        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
-
-  double middle;
-  double spread;
-};
-
-/// Another law, whose bound under its unit coefficient or strength is given, where the ring follows it.
-std::optional<OtherFriction> other_law(const GivenContact& contact, const RightAnswer& right,
-                                       solver::FrictionKind kind) {
-  constexpr double kFollows = 0.02;  // spread between the quartiles, over |q| itself
-  solver::FrictionLaw law = 1.0;
-  law.kind = kind;
-  law.shear_strength = 1.0;
-  const ArrayXd unit = law.bound(contact.pressure);
-  const Plateau shown(ring_excess(contact, unit, right));
-  const double factor = 1.0 + shown.middle;
-  if (kind == contact.friction.kind || !(shown.spread <= kFollows * factor)) return std::nullopt;
-  const std::string name =
-      kind == solver::FrictionKind::tresca
-          ? fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", factor * contact.stress_unit)
-          : fmt::format("Coulomb's law, with a coefficient of {:.4g},", factor);
-  return OtherFriction{
-      fmt::format("{} in place of friction_law = \"{}\"", name, solver::to_string(contact.friction.kind)),
-      factor * unit};
-}
-
-}  // namespace
 
 std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right) {
   constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess

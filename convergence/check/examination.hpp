@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/check/conventions.hpp"
+#include "convergence/check/foreign_field.hpp"
 #include "convergence/check/reference_on_grid.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "solver/contact/certificate.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "solver/input/file_precision.hpp"
 #include "solver/input/input_error.hpp"
@@ -163,6 +162,25 @@ void require_judgeable(const std::filesystem::path& file, const solver::Column& 
   }
 }
 
+/// Sets NaN to zero where there is no contact; refuses it elsewhere.
+void read_missing_as_no_contact(const std::filesystem::path& file, std::vector<solver::Column>& columns) {
+  ArrayXd& pressure = columns[2].values;
+  for (Index row = 0; row < pressure.size(); ++row) {
+    const bool no_contact = std::isnan(pressure[row]) || pressure[row] == 0.0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      double& value = columns[c].values[row];
+      if (!std::isnan(value)) continue;
+      if (c < 2 || !no_contact) {
+        throw InputError(file.string(),
+                         fmt::format("row {}: {} is no number; allowed: NaN where there is no contact, "
+                                     "in pressure, q1 and q2",
+                                     row + 1, columns[c].name));
+      }
+      value = 0.0;
+    }
+  }
+}
+
 }  // namespace
 
 FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
@@ -188,29 +206,6 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
   }
   return found;
 }
-
-namespace {
-
-/// Sets NaN to zero where there is no contact; refuses it elsewhere.
-void read_missing_as_no_contact(const std::filesystem::path& file, std::vector<solver::Column>& columns) {
-  ArrayXd& pressure = columns[2].values;
-  for (Index row = 0; row < pressure.size(); ++row) {
-    const bool no_contact = std::isnan(pressure[row]) || pressure[row] == 0.0;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      double& value = columns[c].values[row];
-      if (!std::isnan(value)) continue;
-      if (c < 2 || !no_contact) {
-        throw InputError(file.string(),
-                         fmt::format("row {}: {} is no number; allowed: NaN where there is no contact, "
-                                     "in pressure, q1 and q2",
-                                     row + 1, columns[c].name));
-      }
-      value = 0.0;
-    }
-  }
-}
-
-}  // namespace
 
 ForeignField read_foreign_field(const std::filesystem::path& file, const std::vector<std::string>& names) {
   auto columns = solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"},

@@ -1,7 +1,6 @@
 #include "convergence/check/given_contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -29,6 +28,38 @@ solver::Dimensionless on_grid(solver::Dimensionless bodies, const Grid& grid) {
 ArrayXd bound_rounding(const solver::FrictionLaw& law, const ArrayXd& pressure, const ArrayXd& rounding) {
   if (law.is_coulomb()) return law.coefficient * rounding;
   return (pressure > 0.0).select(law.bound(ArrayXd(pressure + rounding)) - law.bound(pressure), 0.0);
+}
+
+/// Cells of the largest grid on which a scene's pressure is solved for comparison: about a minute's work.
+constexpr double kMaxSolvedCells = 2e7;
+
+/// Part of a cell by which the centres of two grids may differ.
+constexpr double kSameCells = 1e-3;
+
+/// The values of a grid at the same places of another one, whose first cell is cell (row, column) of the
+/// first; zero beyond it.
+ArrayXd shifted(const Grid& from, const ArrayXd& values, const Grid& to, Index row, Index column) {
+  ArrayXd result = ArrayXd::Zero(to.cells());
+  for (Index i = std::max(Index{0}, -row); i < std::min(to.n1, from.n1 - row); ++i) {
+    for (Index j = std::max(Index{0}, -column); j < std::min(to.n2, from.n2 - column); ++j) {
+      result[i * to.n2 + j] = values[(i + row) * from.n2 + j + column];
+    }
+  }
+  return result;
+}
+
+/// The values of a grid about the scene's origin on another one about `centre`; none where their cells do not
+/// coincide. Lengths are in the unit of `to`.
+std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid& to,
+                             const std::array<double, 2>& centre) {
+  const double off1 = (centre[0] / to.h1) + 0.5 * static_cast<double>(from.n1 - to.n1);
+  const double off2 = (centre[1] / to.h2) + 0.5 * static_cast<double>(from.n2 - to.n2);
+  const double stretched = std::max(std::abs(from.h1 / to.h1 - 1.0), std::abs(from.h2 / to.h2 - 1.0));
+  if (!(std::max(std::abs(off1 - std::round(off1)), std::abs(off2 - std::round(off2))) <= kSameCells &&
+        stretched * static_cast<double>(std::max(from.n1, from.n2)) <= kSameCells)) {
+    return std::nullopt;
+  }
+  return shifted(from, values, to, std::lround(off1), std::lround(off2));
 }
 
 }  // namespace
@@ -96,42 +127,6 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
           bound_rounding(here.friction, field.pressure / stress, field.pressure_rounding / stress),
           field.traction_rounding / stress};
 }
-
-namespace {
-
-/// Cells of the largest grid on which a scene's pressure is solved for comparison: about a minute's work.
-constexpr double kMaxSolvedCells = 2e7;
-
-/// Part of a cell by which the centres of two grids may differ.
-constexpr double kSameCells = 1e-3;
-
-/// The values of a grid at the same places of another one, whose first cell is cell (row, column) of the
-/// first; zero beyond it.
-ArrayXd shifted(const Grid& from, const ArrayXd& values, const Grid& to, Index row, Index column) {
-  ArrayXd result = ArrayXd::Zero(to.cells());
-  for (Index i = std::max(Index{0}, -row); i < std::min(to.n1, from.n1 - row); ++i) {
-    for (Index j = std::max(Index{0}, -column); j < std::min(to.n2, from.n2 - column); ++j) {
-      result[i * to.n2 + j] = values[(i + row) * from.n2 + j + column];
-    }
-  }
-  return result;
-}
-
-/// The values of a grid about the scene's origin on another one about `centre`; none where their cells do not
-/// coincide. Lengths are in the unit of `to`.
-std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid& to,
-                             const std::array<double, 2>& centre) {
-  const double off1 = (centre[0] / to.h1) + 0.5 * static_cast<double>(from.n1 - to.n1);
-  const double off2 = (centre[1] / to.h2) + 0.5 * static_cast<double>(from.n2 - to.n2);
-  const double stretched = std::max(std::abs(from.h1 / to.h1 - 1.0), std::abs(from.h2 / to.h2 - 1.0));
-  if (!(std::max(std::abs(off1 - std::round(off1)), std::abs(off2 - std::round(off2))) <= kSameCells &&
-        stretched * static_cast<double>(std::max(from.n1, from.n2)) <= kSameCells)) {
-    return std::nullopt;
-  }
-  return shifted(from, values, to, std::lround(off1), std::lround(off2));
-}
-
-}  // namespace
 
 ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
   return shifted(from, values, to, (from.n1 - to.n1) / 2, (from.n2 - to.n2) / 2);

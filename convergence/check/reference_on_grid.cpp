@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 #include <utility>
-#include <vector>
 
 #include "convergence/oracle/errors.hpp"
 #include "solver/grid/grid_transfer.hpp"

@@ -3,12 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "convergence/check/allowed.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "solver/model_solution.hpp"
 

@@ -1,13 +1,9 @@
-#include "convergence/exchange/exchange_files.hpp"
+#include "convergence/exchange/program_solve.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/output.hpp"

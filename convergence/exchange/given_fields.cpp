@@ -1,9 +1,6 @@
 #include "convergence/exchange/given_fields.hpp"
 
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "solver/contact/fitted_motion.hpp"
 #include "solver/history_state.hpp"

@@ -5,9 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "convergence/exchange/exchange_files.hpp"
-#include "convergence/exchange/given_fields.hpp"
-#include "convergence/exchange/solver_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/input_error.hpp"

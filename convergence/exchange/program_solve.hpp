@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/exchange/allowed_programs.hpp"
+#include "convergence/exchange/given_fields.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "solver/scene/scene.hpp"
@@ -24,5 +26,26 @@ struct ProgramAnswer {
 /// Throws ProgramFailure where the program fails; InputError for a scene that it does not solve, and a
 /// history.
 ProgramAnswer solve_by_program(const solver::Scene& scene, const AllowedPrograms& allowed);
+
+// ---------------------------------------------------------------- the files of an exchange,
+// docs/schema/exchange.schema.json (exchange_files.cpp)
+
+/// Writes the scene worked out: grid, cell centres, materials, loads, and beside it the gap and a given
+/// pressure.
+void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
+                    const PosedScene& posed);
+
+/// The fields that a program wrote; tractions are zero and `tractions` is false where it found the pressure
+/// alone. Throws ProgramFailure for a file that is missing, broken, of another grid, that holds what is no
+/// number or a negative pressure, or carries another normal load.
+struct ReadFields {
+  GivenFields fields;
+  bool tractions;
+};
+ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
+                         const PosedScene& posed);
+
+/// The program's own numbers, as far as it wrote any: twist, iterations, seconds, converged, message.
+Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
 
 }  // namespace slipstick::convergence

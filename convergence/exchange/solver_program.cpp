@@ -65,8 +65,8 @@ const solver::SettingKeys& program_keys() {
       {"name", KeyType::text, "", "the file's name", kAny, "Names it in results and figures."},
       {"command", KeyType::texts, "", kRequired, kAny,
        "Words that start it, without a shell, in the folder of this file. In them {scene} stands for the "
-       "file "
-       "that it reads, {field} for the one that it writes, {numbers} for one that it may write; {python} for "
+       "file that it reads, {field} for the one that it writes, {numbers} for one that it may write; "
+       "{python} for "
        "the Python with NumPy that draws reports."},
       {"version", KeyType::texts, "", "none", kAny,
        "Words that print its version: part of what decides whether a kept result is still good."},

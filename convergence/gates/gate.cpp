@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <utility>
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/quantity.hpp"
@@ -84,16 +82,8 @@ std::string word(const Json& result, const char* key) {
 
 /// The work that made a result.
 std::string maker(GateSource kind) {
-  switch (kind) {
-    case GateSource::scene:
-      return "solve";
-    case GateSource::study:
-      return "study";
-    case GateSource::result:
-    case GateSource::none:
-      return "run";
-  }
-  throw std::logic_error("unknown source of a gate");
+  if (kind == GateSource::scene) return "solve";
+  return kind == GateSource::study ? "study" : "run";
 }
 
 bool is_value(const FoundQuantity& found) {
@@ -153,15 +143,9 @@ Outcome outcome_of(GateStatus status, bool held) {
 }  // namespace
 
 std::string to_string(Outcome outcome) {
-  static const std::vector<std::pair<Outcome, std::string>> words{
-      {Outcome::passed, "passed"},
-      {Outcome::failed, "failed"},
-      {Outcome::failed_as_expected, "failed as expected"},
-      {Outcome::passed_unexpectedly, "passed unexpectedly"},
-      {Outcome::reported, "reported"},
-      {Outcome::refused, "refused"}};
-  return std::find_if(words.begin(), words.end(), [&](const auto& entry) { return entry.first == outcome; })
-      ->second;
+  constexpr std::array kWords{"passed",   "failed", "failed as expected", "passed unexpectedly",
+                              "reported", "refused"};
+  return kWords.at(static_cast<std::size_t>(outcome));
 }
 
 bool is_error(const std::string& quantity) { return quantity.find("error") != std::string::npos; }
@@ -229,8 +213,7 @@ Judgement refuse(const Gate& gate, const std::string& why) {
 
 int exit_code(const std::vector<Judgement>& judgements) {
   const auto any = [&](Outcome outcome) {
-    return std::any_of(judgements.begin(), judgements.end(),
-                       [&](const Judgement& judgement) { return judgement.outcome == outcome; });
+    return std::ranges::find(judgements, outcome, &Judgement::outcome) != judgements.end();
   };
   if (judgements.empty() || any(Outcome::refused)) return 2;
   return any(Outcome::failed) || any(Outcome::passed_unexpectedly) ? 1 : 0;

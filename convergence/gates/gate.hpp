@@ -7,12 +7,30 @@
 #include <string>
 #include <vector>
 
-#include "convergence/gates/published.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/input/setting_key.hpp"
 
 namespace slipstick::convergence {
+
+/// A number that somebody else published, as a gate file says it.
+struct Published {
+  std::string text;           ///< as printed: its digits say how far it is known
+  double value = 0.0;         ///< of the text
+  double half_unit = 0.0;     ///< half a unit of its last digit; of a fraction, which is exact, its rounding
+  std::string source;         ///< author, year, title, table or equation, page
+  std::string seen;           ///< the text in which it was looked up, where that is another
+  double argument_error = 0;  ///< what the printed digits of its argument leave open
+  double times = 1.0;         ///< the published number is this many times ours
+  bool inverse = false;       ///< or this over ours
+  std::optional<double> relative_error;  ///< of our number, where the result states none
+  double own_error = 0.0;                ///< of our number, in its unit; known once it is bounded
+  std::string differs;                   ///< why ours is another; empty: it agrees
+  std::string not_compared;              ///< why it cannot be compared; empty: it can
+};
+
+/// Number and digits of a text such as 1.0760, 8.155e-3 or 2/3; none for another.
+std::optional<Published> read_printed(const std::string& text);
 
 /// What follows from a gate: an active one must hold, an expected failure must not hold (so that the entry
 /// goes when the defect goes), and a reported one decides nothing.
@@ -137,6 +155,21 @@ std::vector<Gate> with_others(const std::vector<Gate>& gates);
 /// The runs whose results these gates are judged by; where one fails, the parts of its error take some more.
 /// What cannot be read is left to run_gates().
 std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool);
+
+// ---------------------------------------------------------------- published numbers (published.cpp)
+
+/// The gate with bounds on our number: it agrees within half a unit of the last printed digit, what the
+/// digits of the argument leave open, and our own error, as the result states it beside the number
+/// (`uncertainty`, or relative_uncertainty in what contains it). Throws InputError where the result states
+/// none.
+Gate bounded_by_publication(Gate gate, const Json& result);
+
+/// What became of it, in words; empty where something is wrong, or the gate has no published number.
+std::string published_outcome(const Judgement& judgement);
+
+/// The number beside ours, in its own unit: {text, value, half_unit, source, seen, argument_error, ours,
+/// own_error, deviation, differs, not_compared}; deviation is ours minus the published number over half_unit.
+Json published_json(const Judgement& judgement);
 
 // ---------------------------------------------------------------- what became of them (gate_report.cpp)
 

@@ -1,13 +1,6 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/gates/gate.hpp"
 #include "convergence/programs/output_options.hpp"
@@ -48,7 +41,7 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
   return files;
 }
 
-int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
+int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
   const std::optional<Shard> shard = request.runs.wanted_shard();
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
@@ -101,9 +94,7 @@ RunCommand add_gate_command(CLI::App& app) {
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "
       "could not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes "
       "on from there.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_gates(*command, *request, text, result);
-  };
+  return running(command, request, run_gate);
 }
 
 }  // namespace slipstick::convergence

@@ -6,10 +6,8 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/verdict_files.hpp"

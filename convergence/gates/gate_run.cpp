@@ -6,14 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/quantity.hpp"

@@ -1,13 +1,12 @@
-#include "convergence/gates/published.hpp"
+
+#include "convergence/gates/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <utility>
 
-#include "convergence/gates/gate.hpp"
 #include "convergence/results/quantity.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -80,16 +79,9 @@ Gate bounded_by_publication(Gate gate, const Json& result) {
 
 std::string published_outcome(const Judgement& judgement) {
   if (!judgement.gate.published) return "";
-  switch (judgement.outcome) {
-    case Outcome::passed:
-      return "agrees";
-    case Outcome::failed_as_expected:
-      return "differs";
-    case Outcome::reported:
-      return "not compared";
-    default:
-      return "";
-  }
+  if (judgement.outcome == Outcome::passed) return "agrees";
+  if (judgement.outcome == Outcome::failed_as_expected) return "differs";
+  return judgement.outcome == Outcome::reported ? "not compared" : "";
 }
 
 Json published_json(const Judgement& judgement) {

@@ -1,9 +1,7 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
 
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/programs/output_options.hpp"
@@ -47,9 +45,7 @@ RunCommand add_digits_command(CLI::App& app) {
   command->footer(
       "Example:\n  slipstick digits convergence/scenes/paper.toml --set grid.cells=[64,64]\nExit code 0: "
       "done; 1: a solve did not converge; 2: bad input.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_digits(*command, *request, text, result);
-  };
+  return running(command, request, run_digits);
 }
 
 }  // namespace slipstick::convergence

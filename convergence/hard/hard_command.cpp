@@ -1,11 +1,6 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/output_options.hpp"
@@ -92,9 +87,7 @@ RunCommand add_hard_command(CLI::App& app) {
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
       "repeating an interrupted command goes on from there.\nExit code 0: every answer is certified or "
       "refused with a reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_hard(*command, *request, text, result);
-  };
+  return running(command, request, run_hard);
 }
 
 }  // namespace slipstick::convergence

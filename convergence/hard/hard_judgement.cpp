@@ -1,4 +1,4 @@
-#include "convergence/hard/hard_judgement.hpp"
+#include "convergence/hard/hard_run.hpp"
 
 #include <fmt/core.h>
 
@@ -72,6 +72,16 @@ double factor(const char* path, Variant variant) {
   }
   if (variant != Variant::in_other_units) return 1.0;
   return name == "twist_angle" || name == "normal_load" ? 1.0 : millimetres;
+}
+
+/// How far the normal contact of one answer is from that of another, relative.
+double pressure_difference(const Json& result, const Json& other) {
+  double largest = 0.0;
+  for (const char* path : {"normal_load", "contact_radius", "approach", "peak_pressure"}) {
+    const double difference = std::abs(number_at(other, path) / number_at(result, path) - 1.0);
+    if (!std::isnan(number_at(result, path)) && !(difference <= largest)) largest = difference;
+  }
+  return largest;
 }
 
 }  // namespace
@@ -173,20 +183,6 @@ std::string to_string(MethodVerdict verdict) {
   constexpr std::array words{"agrees", "refused", "not_converged", "other_direction", "other_answer"};
   return words[static_cast<std::size_t>(verdict)];
 }
-
-namespace {
-
-/// How far the normal contact of one answer is from that of another, relative.
-double pressure_difference(const Json& result, const Json& other) {
-  double largest = 0.0;
-  for (const char* path : {"normal_load", "contact_radius", "approach", "peak_pressure"}) {
-    const double difference = std::abs(number_at(other, path) / number_at(result, path) - 1.0);
-    if (!std::isnan(number_at(result, path)) && !(difference <= largest)) largest = difference;
-  }
-  return largest;
-}
-
-}  // namespace
 
 ComparedAnswer compare_answer(const Json& certified, const Json& other) {
   JudgedCase alone = judge_alone(other);

@@ -3,14 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
-#include "convergence/hard/hard_judgement.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
@@ -203,6 +199,17 @@ Json method_counts(const std::vector<Trial>& trials, const std::string& method) 
   return counts;
 }
 
+std::string methods_text(const Json& methods) {
+  std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
+                                 "refused", "not converged", "other direction", "other answer");
+  for (const auto& [name, counts] : methods.items()) {
+    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", name, counts["agrees"].get<int>(),
+                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
+                        counts["other_direction"].get<int>(), counts["other_answer"].get<int>());
+  }
+  return text;
+}
+
 }  // namespace
 
 BesideMethod read_beside_method(const std::string& word) {
@@ -253,21 +260,6 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
   json["provenance"] = provenance(1);
   return json;
 }
-
-namespace {
-
-std::string methods_text(const Json& methods) {
-  std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
-                                 "refused", "not converged", "other direction", "other answer");
-  for (const auto& [name, counts] : methods.items()) {
-    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", name, counts["agrees"].get<int>(),
-                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
-                        counts["other_direction"].get<int>(), counts["other_answer"].get<int>());
-  }
-  return text;
-}
-
-}  // namespace
 
 std::string hard_text(const Json& result) {
   std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",

@@ -1,4 +1,4 @@
-#include "convergence/laws/chebyshev.hpp"
+#include "convergence/laws/twist_law.hpp"
 
 #include <fmt/core.h>
 

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "analytic/approximations.hpp"
-#include "analytic/torsion.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "solver/input/input_error.hpp"
 

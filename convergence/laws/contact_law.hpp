@@ -3,14 +3,93 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analytic/axisymmetric.hpp"
-#include "convergence/laws/limit_surface.hpp"
-#include "convergence/laws/parallel_elements.hpp"
+#include "analytic/torsion.hpp"
 #include "convergence/laws/twist_law.hpp"
 #include "solver/scene/scene.hpp"
 
+/// What a contact in torsion carries, in all the forms that other programs read.
 namespace slipstick::convergence {
+
+// ---------------------------------------------------------------- limit loads (limit_surface.cpp)
+
+/// A load under which all of an axisymmetric contact slides, turning about a point at a distance from its
+/// axis. The loads that the contact carries lie on one side of the plane through this one whose normal is
+/// that motion: force * centre + moment is largest here (Goyal 1991).
+struct LimitLoad {
+  double centre;  ///< distance over a; infinite: it slides without turning
+  double force;   ///< |F|/(mu W), perpendicular to the arm
+  double moment;  ///< M/M_lim
+};
+
+/// The loads that a contact carries. The surface is symmetric about the axis of moments.
+struct LimitSurface {
+  std::vector<LimitLoad> loads;  ///< from the moment alone to the force alone
+  /// Between loads next to each other the surface lies between their chord and their tangents, which are so
+  /// far apart at most, over the distance from the origin.
+  double gap;
+  /// (F/(mu W))^2 + (M/M_lim)^2 = 1, which is used in its place (Howe and Cutkosky 1996): its distance from
+  /// the origin over the exact one, less 1, where that is farthest from 0.
+  double ellipsoid_error;
+  LimitLoad ellipsoid_farthest;
+};
+
+/// Computes a number of loads, whose motions are spread evenly. Throws std::domain_error for fewer than 3.
+LimitSurface limit_surface(const analytic::Profile& profile, int loads);
+
+// ---------------------------------------------------------------- laws of straight lines
+// (parallel_elements.cpp) Tables with linear interpolation, and springs with friction in parallel.
+// Dimensionless as twist_law.hpp; errors are of m = M/M_lim, absolute.
+
+/// States on the exact curve, from rest to where 1 - m is the error, straight lines between them, and the
+/// last moment beyond.
+struct StateTable {
+  std::vector<analytic::TorsionState> rows;
+  double error;  ///< the largest
+};
+
+/// A spring in series with a slider, as Jenkins and Iwan have them.
+struct JenkinsElement {
+  double stiffness;  ///< m over t
+  double slip;       ///< m at which it slips
+};
+
+/// Jenkins elements side by side. Together they stick and slip as the contact does, Masing's rule included;
+/// their slip moments sum up to 1, the exact limit.
+///
+/// After any rotations the error is e(x_0) - 2 e(x_1) + 2 e(x_2) - ... with e that of first loading, x_0 the
+/// largest rotation and x_1 > x_2 > ... half the ranges of the branches still open. As x_0 >= x_1, it is a
+/// sum of differences of e over intervals side by side: at most the total variation of e, which reversals at
+/// its extremes reach.
+struct ParallelElements {
+  std::vector<JenkinsElement> elements;  ///< the first to slip first
+  double error;          ///< the largest on first loading; on loops between t and -t three times that
+  double history_error;  ///< the largest after any rotations: the total variation of that on first loading
+
+  double moment_ratio_at(double twist) const;  ///< on first loading
+};
+
+/// The range of errors of m, and of numbers of elements, that may be asked for.
+inline constexpr double kMinLineError = 1e-7;
+inline constexpr double kMaxLineError = 0.5;
+inline constexpr int kMaxElements = 200;
+
+/// As few rows as keep the error. Throws std::domain_error for one out of range.
+StateTable tabulate(const analytic::Profile& profile, double error);
+
+/// Rows at equal steps of the rotation, for readers that draw cubic splines through them or step evenly: with
+/// either, and with straight lines, the error is kept. Throws std::domain_error as tabulate().
+StateTable tabulate_evenly(const analytic::Profile& profile, double error);
+
+/// As few elements as keep the error, from 1e-5 on. Throws std::domain_error for one out of range.
+ParallelElements parallel_elements(const analytic::Profile& profile, double error);
+
+/// So many elements at most (1 to kMaxElements, or std::domain_error), with the least error.
+ParallelElements parallel_elements(const analytic::Profile& profile, int count);
+
+// ---------------------------------------------------------------- all together (contact_law.cpp)
 
 /// The units in which the dimensionless law is a scene's, SI.
 struct LawUnits {

@@ -1,4 +1,4 @@
-#include "convergence/laws/limit_surface.hpp"
+#include "convergence/laws/contact_law.hpp"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "convergence/laws/parallel_elements.hpp"
+#include "convergence/laws/contact_law.hpp"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <stdexcept>
-
-#include "convergence/laws/twist_law.hpp"
 
 namespace slipstick::convergence {
 namespace {

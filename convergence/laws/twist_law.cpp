@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/torsion.hpp"

@@ -1,9 +1,43 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "analytic/axisymmetric.hpp"
-#include "convergence/laws/chebyshev.hpp"
 
 namespace slipstick::convergence {
+
+// ---------------------------------------------------------------- polynomials (chebyshev.cpp)
+
+/// A polynomial on an interval, as coefficients of the Chebyshev polynomials of x scaled to [-1, 1].
+struct ChebyshevPiece {
+  double low;
+  double high;
+  std::vector<double> coefficients;
+
+  double operator()(double x) const;
+};
+
+/// A function as polynomials on intervals that follow each other.
+struct PiecewiseChebyshev {
+  std::vector<ChebyshevPiece> pieces;
+  double error = 0;  ///< the largest found, relative, at points between those of the fit
+
+  /// Beyond either end the nearest piece goes on.
+  double operator()(double x) const;
+  std::size_t degree() const;  ///< the highest
+};
+
+/// The highest degree of a piece.
+inline constexpr std::size_t kMaxDegree = 15;
+
+/// Fits f between the first and the last knot, with a piece's end at each knot and at halves between them
+/// where the tolerance asks for it; relative errors found are at most half the tolerance. Throws
+/// std::domain_error where 200 pieces do not reach it.
+PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const std::vector<double>& knots,
+                                 double tolerance);
+
+// ---------------------------------------------------------------- the law (twist_law.cpp)
 
 /// Moment and rotation of an axisymmetric contact in torsion, as polynomials with a stated error.
 /// Dimensionless as analytic/torsion.hpp: the rotation as t = G a^2 phi/(mu W), the moment as m = M/M_lim.

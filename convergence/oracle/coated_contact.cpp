@@ -1,10 +1,8 @@
-#include "convergence/oracle/coated_contact.hpp"
+#include "convergence/oracle/exact_theories.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
 #include "convergence/oracle/exact_shapes.hpp"
 

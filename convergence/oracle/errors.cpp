@@ -1,13 +1,7 @@
 #include "convergence/oracle/errors.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
-#include <vector>
 
-#include "convergence/oracle/sharpened.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/grid/threads.hpp"
 
@@ -183,38 +177,6 @@ TractionError unknown_tractions() {
   return {kUnknownField, kUnknownField, kUnknownField, kUnknownField, kUnknownField, kUnknownField};
 }
 
-}  // namespace
-
-ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
-  const Index cells = grid.cells();
-  ExactFields exact{ArrayXd(cells), ArrayXd(cells), ArrayXd(2 * cells)};
-  const Images images(oracle, grid);
-  ArrayXd sizes(images.rows() * images.columns());  // of the shear tractions
-  for (Index i = 0; i < images.rows(); ++i) {
-    for (Index j = 0; j < images.columns(); ++j) {
-      const double y1 = grid.x1(i) - oracle.centre[0];
-      const double y2 = grid.x2(j) - oracle.centre[1];
-      const bool found = images.diagonal() && j < i;
-      const Index twin = j * grid.n2 + i;
-      const double radius = found ? exact.radius[twin] : oracle.radius(y1, y2);
-      const double pressure = found ? exact.pressure[twin] : oracle.pressure(radius);
-      double& size = sizes[i * images.columns() + j];
-      const auto [q1, q2] = shear_at(oracle, y1, y2, [&](double place) {
-        return size = found ? sizes[j * images.columns() + i] : oracle.traction(place);
-      });
-      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
-        exact.radius[image] = radius;
-        exact.pressure[image] = pressure;
-        exact.traction[image] = sign1 * q1;
-        exact.traction[image + cells] = sign2 * q2;
-      });
-    }
-  }
-  return exact;
-}
-
-namespace {
-
 /// Against averages over the cells near an edge, and values at the centres elsewhere, where the two differ by
 /// h^2/24 times the traction's second derivatives.
 TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid,
@@ -308,6 +270,34 @@ FieldError sharpened_error(const solver::Solution& solution, const ExactFields& 
 }
 
 }  // namespace
+
+ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
+  const Index cells = grid.cells();
+  ExactFields exact{ArrayXd(cells), ArrayXd(cells), ArrayXd(2 * cells)};
+  const Images images(oracle, grid);
+  ArrayXd sizes(images.rows() * images.columns());  // of the shear tractions
+  for (Index i = 0; i < images.rows(); ++i) {
+    for (Index j = 0; j < images.columns(); ++j) {
+      const double y1 = grid.x1(i) - oracle.centre[0];
+      const double y2 = grid.x2(j) - oracle.centre[1];
+      const bool found = images.diagonal() && j < i;
+      const Index twin = j * grid.n2 + i;
+      const double radius = found ? exact.radius[twin] : oracle.radius(y1, y2);
+      const double pressure = found ? exact.pressure[twin] : oracle.pressure(radius);
+      double& size = sizes[i * images.columns() + j];
+      const auto [q1, q2] = shear_at(oracle, y1, y2, [&](double place) {
+        return size = found ? sizes[j * images.columns() + i] : oracle.traction(place);
+      });
+      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
+        exact.radius[image] = radius;
+        exact.pressure[image] = pressure;
+        exact.traction[image] = sign1 * q1;
+        exact.traction[image + cells] = sign2 * q2;
+      });
+    }
+  }
+  return exact;
+}
 
 TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid) {
   return traction_error(traction, oracle, grid, exact_fields(oracle, grid));

@@ -7,10 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/cycle.hpp"
@@ -18,9 +14,7 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
-#include "convergence/oracle/coated_contact.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
-#include "convergence/oracle/friction_bound.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {

@@ -2,9 +2,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "analytic/axisymmetric.hpp"
+#include "analytic/layered/layered_contact.hpp"
 #include "convergence/oracle/oracle.hpp"
+#include "solver/scene/friction_law.hpp"
+#include "solver/scene/scene.hpp"
 
 /// The exact theories; exact_history() knows for which scenes each holds.
 namespace slipstick::convergence {
@@ -28,5 +33,33 @@ std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene);
 
 /// No answer, for this reason.
 std::unique_ptr<ExactHistory> no_theory(const std::string& reason);
+
+// ---------------------------------------------------------------- friction (friction_bound.cpp)
+
+/// What friction carries over an axisymmetric contact: reference times profile.pressure(r/a).
+struct FrictionBound {
+  std::shared_ptr<const analytic::Profile> profile;
+  double reference;  ///< Pa
+};
+
+/// The friction bound of a law under a pressure, reference_pressure (Pa) times pressure.pressure(r/a).
+/// Coulomb's law and Tresca's under every pressure, the others under Hertz's. None where it has no exact form
+/// here.
+std::optional<FrictionBound> find_friction_bound(const solver::FrictionLaw& law,
+                                                 std::shared_ptr<const analytic::Profile> pressure,
+                                                 double reference_pressure);
+
+// ---------------------------------------------------------------- bodies with a coat (coated_contact.cpp)
+
+/// The material that is touched: that of the body's layer where it has one.
+solver::Material surface_material(const solver::Material& body);
+
+/// Why a coated scene has no exact contact, or one that torsion alone does not describe; empty if it may
+/// have.
+std::string coated_obstacle(const solver::Scene& scene);
+
+/// The contact of a sphere or flat punch where a body is coated, under a load in N. Throws what
+/// analytic::layered::press() throws.
+analytic::layered::LayeredContact press_coated(const solver::Scene& scene, double load);
 
 }  // namespace slipstick::convergence

@@ -1,4 +1,4 @@
-#include "convergence/oracle/friction_bound.hpp"
+#include "convergence/oracle/exact_theories.hpp"
 
 #include <algorithm>
 #include <cmath>

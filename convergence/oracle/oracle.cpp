@@ -6,9 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
-#include "convergence/oracle/coated_contact.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/exact_theories.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

@@ -1,11 +1,10 @@
-#include "convergence/oracle/sharpened.hpp"
+#include "convergence/oracle/errors.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 namespace slipstick::convergence {
 namespace {

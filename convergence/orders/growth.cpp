@@ -147,15 +147,8 @@ std::string to_string(Growth growth) {
 }
 
 double grown(Growth growth, double cells) {
-  switch (growth) {
-    case Growth::n2:
-      return cells * cells;
-    case Growth::n2_log_n:
-      return cells * cells * std::log2(2.0 * cells);
-    case Growth::n4:
-      return std::pow(cells, 4);
-  }
-  return kNaN;
+  if (growth == Growth::n4) return std::pow(cells, 4);
+  return cells * cells * (growth == Growth::n2 ? 1.0 : std::log2(2.0 * cells));
 }
 
 Crossover find_crossover(const Family& slow, const Family& quick) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -19,21 +20,9 @@ std::string flaw(const MeshSample& sample) {
 }  // namespace
 
 std::string to_string(OrderVerdict verdict) {
-  switch (verdict) {
-    case OrderVerdict::asymptotic:
-      return "asymptotic";
-    case OrderVerdict::preasymptotic:
-      return "preasymptotic";
-    case OrderVerdict::superconvergent:
-      return "superconvergent";
-    case OrderVerdict::oscillatory:
-      return "oscillatory";
-    case OrderVerdict::floor:
-      return "floor";
-    case OrderVerdict::too_few:
-      return "too_few";
-  }
-  return "";
+  constexpr std::array kWords{"asymptotic",  "preasymptotic", "superconvergent",
+                              "oscillatory", "floor",         "too_few"};
+  return kWords.at(static_cast<std::size_t>(verdict));
 }
 
 MeshSequence coarsest_first(const std::vector<MeshSample>& samples) {

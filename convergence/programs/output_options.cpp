@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <string_view>
 #include <system_error>
 
 #include "solver/input/input_error.hpp"

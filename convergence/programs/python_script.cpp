@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"

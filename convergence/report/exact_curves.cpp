@@ -2,7 +2,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <vector>
 
 #include "analytic/approximations.hpp"
 #include "analytic/cycle.hpp"

@@ -4,13 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/scene_page.hpp"
@@ -202,8 +197,8 @@ RunCommand add_report_command(CLI::App& app) {
       ->delimiter(',');
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
-      "convergence/scenes/rough_sphere.toml "
-      "--want twist=1e-2 --output build/rough\n  slipstick report convergence/scenes/*.toml --quick --output "
+      "convergence/scenes/rough_sphere.toml --want twist=1e-2 --output build/rough\n  slipstick report "
+      "convergence/scenes/*.toml --quick --output "
       "build/gallery\nFinished solves are kept: repeating an "
       "interrupted command goes on from there.\nExit code 0: done; 1: a page says bad; 2: it could not be "
       "made.");

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/growth.hpp"

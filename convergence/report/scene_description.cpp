@@ -1,10 +1,9 @@
-#include "convergence/report/scene_description.hpp"
+#include "convergence/report/scene_numbers.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

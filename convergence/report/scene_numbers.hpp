@@ -5,10 +5,15 @@
 #include <vector>
 
 #include "convergence/report/scene_page.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/scene/scene.hpp"
 
-/// The numbers of a scene's page, and how far each may be off.
+/// What a page says of its scene: what it is, and its numbers with how far each may be off.
 namespace slipstick::convergence {
+
+/// What a scene is: {name, text, summary: [[words, value]], gap: {x1, along_1, x2, along_2}}, the gap in m
+/// along both axes of the grid through its centre; null where the bodies cannot touch.
+Json describe(const solver::Scene& scene, const std::filesystem::path& file);
 
 /// The coarsest mesh of a study, cells along the longer side.
 inline constexpr solver::Index kFewestCells = 8;

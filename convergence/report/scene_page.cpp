@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <utility>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/report/scene_cost.hpp"
-#include "convergence/report/scene_description.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/json_text.hpp"

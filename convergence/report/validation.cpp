@@ -1,15 +1,12 @@
 #include "convergence/report/validation.hpp"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numbers>
 #include <stdexcept>
-#include <utility>
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"

@@ -1,10 +1,7 @@
 #include "convergence/results/exact_result.hpp"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,10 +1,9 @@
 #include "convergence/results/markup.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "solver/input/input_file.hpp"
@@ -18,32 +17,16 @@ std::string as_utf8(const std::string& bytes) {
 
 std::string xml_text(std::string_view text) {
   constexpr std::string_view kNoCharacter = "\xef\xbf";  // before 0xbe and 0xbf in UTF-8: U+FFFE, U+FFFF
+  static const std::map<char, std::string> kMarkup{{'&', "&amp;"},  {'<', "&lt;"},   {'>', "&gt;"},
+                                                   {'"', "&quot;"}, {'\n', "&#10;"}, {'\t', "&#9;"}};
   std::string escaped;
   for (const char c : as_utf8(solver::printable(text))) {
     if (escaped.ends_with(kNoCharacter) && (c == '\xbe' || c == '\xbf')) {
       escaped.replace(escaped.size() - kNoCharacter.size(), kNoCharacter.size(), "?");
       continue;
     }
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\n':
-      case '\t':
-        escaped += fmt::format("&#{};", static_cast<int>(c));
-        break;
-      default:
-        escaped += c;
-    }
+    const auto markup = kMarkup.find(c);
+    escaped += markup == kMarkup.end() ? std::string(1, c) : markup->second;
   }
   return escaped;
 }

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <new>
 #include <system_error>
 
@@ -58,14 +57,12 @@ std::string plain_text(std::string_view text) {
 std::string failure_text(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return "memory ran out; allowed: fewer cells or side-by-side solves (--jobs), or more memory (ulimit "
-           "-v); "
-           "--memory-limit refuses in time what is too large";
+           "-v); --memory-limit refuses in time what is too large";
   }
   const auto* const failure = dynamic_cast<const std::system_error*>(&error);
   if (failure != nullptr && failure->code() == std::errc::resource_unavailable_try_again) {
     return "no more threads or processes can be started; allowed: fewer of them (solver.threads, --jobs), or "
-           "a "
-           "higher limit (ulimit -u, ulimit -v)";
+           "a higher limit (ulimit -u, ulimit -v)";
   }
   return error.what();
 }

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/sharpened.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/input/field_file.hpp"

@@ -90,8 +90,7 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
   }
   if (std::isinf(path)) {
     return "what the length of the steps leaves open is not known, since few cells or more parts of the "
-           "steps "
-           "do not carry these loads; compare with a larger solver.substeps";
+           "steps do not carry these loads; compare with a larger solver.substeps";
   }
   if (path > mesh) {
     return fmt::format("the steps are too long, so the contact's motion is {}; take more solver.substeps",

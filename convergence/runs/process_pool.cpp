@@ -2,16 +2,12 @@
 
 #include <fmt/core.h>
 #include <poll.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <list>
-#include <map>
 #include <numeric>
-#include <stdexcept>
-#include <string_view>
 #include <thread>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "convergence/runs/run_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"

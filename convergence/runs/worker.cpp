@@ -1,13 +1,10 @@
 #include "convergence/runs/worker.hpp"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <iostream>
 #include <new>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/exact_result.hpp"

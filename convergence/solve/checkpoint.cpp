@@ -3,12 +3,9 @@
 #include <fmt/core.h>
 
 #include <bit>
-#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "convergence/results/json_text.hpp"
 #include "convergence/runs/result_cache.hpp"

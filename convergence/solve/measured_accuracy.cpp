@@ -88,8 +88,7 @@ std::string accuracy_toml(const AccuracyData& data, const std::string& origin) {
   std::string text = fmt::format(
       "# Errors of smooth contacts in torsion, and what solves cost; what `slipstick solve --accuracy` picks "
       "by.\n# {}\n# cells_across: the contact's diameter over a cell's side. error: relative, the largest "
-      "over "
-      "the loads and over\n# finer meshes. tolerance: the loosest that changes it by at most a tenth. "
+      "over the loads and over\n# finer meshes. tolerance: the loosest that changes it by at most a tenth. "
       "applications, work: at each of the\n# tolerances, the most over the loads; work is the seconds of a "
       "whole solve over those of one application on\n# 64 x 64 cells.\nversion = 1\n",
       origin);

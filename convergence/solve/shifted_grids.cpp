@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/quantity.hpp"

@@ -3,9 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/runs/run_options.hpp"
 #include "convergence/solve/measured_accuracy.hpp"
@@ -88,9 +85,7 @@ RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
       "  slipstick solve convergence/scenes/ellipse.toml --accuracy 1e-3\n"
       "Exit code 0: converged; 1: not, or the accuracy not reached, result written all the same; 2: bad "
       "input, or gross slip asked for, or --model exact where no exact answer is known.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_solve(*command, *request, text, result);
-  };
+  return running(command, request, run_solve);
 }
 
 }  // namespace slipstick::convergence

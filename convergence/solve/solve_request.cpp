@@ -2,15 +2,8 @@
 
 #include <fmt/core.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
-#include <chrono>
-#include <filesystem>
-#include <functional>
 #include <iostream>
-#include <memory>
-#include <ostream>
-#include <string_view>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/output_options.hpp"

@@ -5,11 +5,8 @@
 #include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <string_view>
 #include <utility>
 

@@ -1,14 +1,11 @@
 #include "convergence/studies/study.hpp"
 
-#include <nlohmann/json.hpp>
 #include <numeric>
-#include <utility>
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
-#include "convergence/studies/study_judgement.hpp"
 #include "convergence/studies/study_plan.hpp"
 
 namespace slipstick::convergence {

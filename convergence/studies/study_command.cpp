@@ -1,11 +1,7 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <ostream>
-#include <string>
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
@@ -73,9 +69,7 @@ RunCommand add_study_command(CLI::App& app) {
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
       "some solve did not converge or failed, and is marked; 2: bad input.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_study_request(*command, *request, text, result);
-  };
+  return running(command, request, run_study_request);
 }
 
 }  // namespace slipstick::convergence

@@ -1,11 +1,10 @@
-#include "convergence/studies/study_judgement.hpp"
+#include "convergence/studies/study_plan.hpp"
 
 #include <fmt/core.h>
 #include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "convergence/orders/expected_order.hpp"

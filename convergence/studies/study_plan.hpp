@@ -8,7 +8,7 @@
 
 #include "convergence/studies/study.hpp"
 
-/// The meshes of a study.
+/// The meshes of a study, and what is found on them.
 namespace slipstick::convergence {
 
 /// One grid of a mesh.
@@ -45,5 +45,18 @@ struct MeshResults {
 std::vector<Series> make_series(const Study& study, std::optional<double> memory_limit = {});
 
 RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance);
+
+// ---------------------------------------------------------------- what its results say (study_judgement.cpp)
+
+/// Orders, extrapolated values and budgets of a series, with the rows that they are determined from.
+Json judge_series(const Study& study, const Series& series, const std::vector<MeshResults>& results);
+
+/// Whether an order that is fitted would say more about the tolerance than about the mesh.
+bool needs_tightening(const Study& study, const Series& series, const std::vector<MeshResults>& results);
+
+/// The tolerances asked for, each on every mesh, and what stopping there added. by_mesh: results to each
+/// tolerance, and to one that stands for none; results: those that judge_series() has.
+Json tolerance_rows(const Study& study, const Series& series, const std::vector<std::vector<Json>>& by_mesh,
+                    const std::vector<MeshResults>& results);
 
 }  // namespace slipstick::convergence

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/runs/failed_runs.hpp"

@@ -2,9 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_case.hpp"

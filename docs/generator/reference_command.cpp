@@ -1,13 +1,9 @@
 #include "docs/generator/reference_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/gates/gate.hpp"

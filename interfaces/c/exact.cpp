@@ -3,8 +3,6 @@
 #include <array>
 #include <limits>
 #include <span>
-#include <stdexcept>
-#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"

@@ -4,13 +4,9 @@
 
 #include <chrono>
 #include <limits>
-#include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <shared_mutex>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/quantity.hpp"

@@ -3,13 +3,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
 #include <regex>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "analytic/named_profile.hpp"
 #include "convergence/laws/contact_law.hpp"
@@ -18,7 +14,6 @@
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "interfaces/laws/law_files.hpp"
-#include "interfaces/laws/law_result.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::laws {
@@ -120,9 +115,7 @@ convergence::RunCommand add_law_command(CLI::App& app) {
       "Examples: slipstick law convergence/scenes/paper.toml --write law.h --write law.inp --json law.json\n"
       "          slipstick law --profile cone --elements 8\n"
       "docs/guides/contact-law.md says what each form holds, and its error.");
-  return [command, request](std::ostream& text, Json& result) {
-    return run_law(*command, *request, text, result);
-  };
+  return running(command, request, run_law);
 }
 
 }  // namespace slipstick::laws

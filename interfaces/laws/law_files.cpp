@@ -5,7 +5,6 @@
 #include <array>
 #include <cctype>
 
-#include "interfaces/laws/program_parameters.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::laws {

@@ -1,11 +1,10 @@
-#include "interfaces/laws/law_result.hpp"
 
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
 
 #include "convergence/results/provenance.hpp"
-#include "interfaces/laws/program_parameters.hpp"
+#include "interfaces/laws/law_files.hpp"
 
 namespace slipstick::laws {
 

@@ -1,4 +1,4 @@
-#include "interfaces/laws/program_parameters.hpp"
+#include "interfaces/laws/law_files.hpp"
 
 #include <cmath>
 #include <numbers>

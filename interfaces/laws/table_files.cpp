@@ -2,11 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <string>
-
 #include "analytic/cycle.hpp"
 #include "interfaces/laws/law_files.hpp"
-#include "interfaces/laws/program_parameters.hpp"
 
 namespace slipstick::laws {
 

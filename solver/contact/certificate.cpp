@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "solver/grid/motion_field.hpp"

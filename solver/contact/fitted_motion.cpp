@@ -1,7 +1,5 @@
 #include "solver/contact/fitted_motion.hpp"
 
-#include <cmath>
-
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/smoothed_friction.hpp"
 

@@ -3,9 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <utility>
 
 #include "solver/contact/anderson.hpp"
 #include "solver/newton/admissible.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
-#include <utility>
 
 #include "solver/grid/own_rows.hpp"
 #include "solver/newton/nested_iteration.hpp"

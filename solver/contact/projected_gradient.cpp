@@ -3,10 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/newton/admissible.hpp"

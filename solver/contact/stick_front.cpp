@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 
 #include <Eigen/Cholesky>
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "solver/grid/sweep.hpp"
 #include "solver/grid/threads.hpp"

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "solver/grid/sweep.hpp"

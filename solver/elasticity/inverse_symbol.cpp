@@ -1,10 +1,8 @@
 #include "solver/elasticity/inverse_symbol.hpp"
 
-#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
-#include <vector>
 
 #include "solver/elasticity/mirrored_inverse_symbol.hpp"
 #include "solver/elasticity/symbol_table.hpp"

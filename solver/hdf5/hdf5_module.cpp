@@ -6,7 +6,6 @@
 #include <array>
 #include <csignal>
 #include <set>
-#include <stdexcept>
 #include <system_error>
 
 #include "solver/hdf5/hdf5_library.hpp"

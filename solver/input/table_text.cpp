@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 #include <ranges>
-#include <string_view>
 #include <tuple>
 #include <utility>
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
-#include <stdexcept>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"

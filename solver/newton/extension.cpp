@@ -1,9 +1,5 @@
 #include "solver/newton/extension.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "solver/grid/threads.hpp"
 #include "solver/newton/conjugate_gradients.hpp"
 #include "solver/newton/tangent_space.hpp"

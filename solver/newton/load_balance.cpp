@@ -1,8 +1,6 @@
 #include "solver/newton/load_balance.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "solver/newton/admissible.hpp"
 

@@ -1,12 +1,10 @@
 #include "solver/scene/roughness.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <numbers>
 #include <random>
-#include <stdexcept>
 #include <tuple>
 
 #include "solver/fft/fftw.hpp"

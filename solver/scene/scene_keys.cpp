@@ -3,8 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/roughness.hpp"

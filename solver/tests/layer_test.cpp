@@ -4,12 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "solver/model.hpp"
 #include "solver/tests/scene_file.hpp"

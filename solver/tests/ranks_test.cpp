@@ -1,9 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <numeric>
-#include <vector>
-
 #include "solver/elasticity/inverse_symbol.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"

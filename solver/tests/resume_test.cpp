@@ -1,7 +1,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 
 #include "solver/history_state.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/elliptic.hpp"

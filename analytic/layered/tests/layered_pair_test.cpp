@@ -1,7 +1,5 @@
 #include "analytic/layered/layered_pair.hpp"
 
-#include <gtest/gtest.h>
-
 #include <stdexcept>
 
 #include "analytic/tests/values.hpp"

@@ -1,7 +1,5 @@
 // Any text is compared with itself as a benchmark's timings or is refused.
 
-#include <string>
-
 #include "bench/compare/comparison.hpp"
 #include "bench/compare/comparison_report.hpp"
 #include "solver/input/tests/fuzz_file.hpp"

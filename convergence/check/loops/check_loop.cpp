@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <vector>
 
 #include "convergence/check/loops/loop_contact.hpp"
 #include "convergence/check/loops/loop_judgement.hpp"
-#include "convergence/check/loops/loop_record.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"

@@ -2,8 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <stdexcept>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/named_profile.hpp"

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/check/loops/loop_contact.hpp"
 #include "convergence/check/loops/loop_path.hpp"
 
 namespace slipstick::convergence {
@@ -44,5 +45,14 @@ std::vector<LoopStart> possible_starts(const LoopPath& path);
 /// law_error: relative error of the laws.
 LoopHypothesis fit_family(const LoopPath& path, double law_error, const std::vector<LoopStart>& starts,
                           const LoopFamily& family);
+
+// ---------------------------------------------------------------- the laws that are tried (loop_laws.cpp)
+
+/// The exact law, from the one of these starts that brings it closest to the loop.
+LoopHypothesis fit_exact_law(const LoopPath& path, const LoopContact& contact,
+                             const std::vector<LoopStart>& starts);
+
+/// The laws that simulators use instead of the exact one, each with its best parameters.
+std::vector<LoopHypothesis> fit_wrong_laws(const LoopPath& path, const LoopContact& contact);
 
 }  // namespace slipstick::convergence

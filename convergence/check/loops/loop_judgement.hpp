@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/check/loops/loop_laws.hpp"
+#include "convergence/check/loops/loop_fit.hpp"
 #include "convergence/check/loops/loop_path.hpp"
 
 namespace slipstick::convergence {

@@ -1,4 +1,4 @@
-#include "convergence/check/loops/loop_laws.hpp"
+#include "convergence/check/loops/loop_fit.hpp"
 
 #include <fmt/core.h>
 
@@ -81,18 +81,10 @@ enum class Free { none, limit, stiffness, factor, both };
 
 /// The factors of limit and stiffness for these parameters.
 std::pair<double, double> limit_and_stiffness(Free free, const Parameters& p) {
-  switch (free) {
-    case Free::none:
-      return {1.0, 1.0};
-    case Free::limit:
-      return {p[0], 1.0};
-    case Free::stiffness:
-      return {1.0, p[0]};
-    case Free::factor:
-      return {p[0], p[0]};
-    default:
-      return {p[0], p[1]};
-  }
+  if (free == Free::none) return {1.0, 1.0};
+  if (free == Free::limit) return {p[0], 1.0};
+  if (free == Free::stiffness) return {1.0, p[0]};
+  return {p[0], free == Free::factor ? p[0] : p[1]};
 }
 
 /// The parameters at which a fit starts. stiffness: the record's mean stiffness over the exact one.

@@ -1,11 +1,10 @@
-#include "convergence/check/loops/loop_record.hpp"
+#include "convergence/check/loops/check_loop.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/check/loops/loop_path.hpp"
 #include "convergence/results/json_text.hpp"

@@ -1,6 +1,6 @@
 // The same field in another program's conventions.
 
-#include "convergence/check/conventions.hpp"
+#include "convergence/check/foreign_field.hpp"
 
 #include <utility>
 

@@ -2,7 +2,6 @@
 
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"
-#include "convergence/check/loops/loop_record.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 namespace {

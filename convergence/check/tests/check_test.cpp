@@ -227,14 +227,10 @@ TEST(Check, FindsExactFieldsGood) {
     const solver::Scene scene = scene_of(name, cells);
     EXPECT_LE(find_good(sampled(scene), scene)["traction_error"]["l2"], 1e-12) << name;
   }
-  for (const auto& [name, cells, ratio] : {std::tuple{"paper", 112, 0.99},
-                                           {"paper", 128, 0.05},
-                                           {"paper", 136, 0.05},
-                                           {"paper", 136, 0.2},
-                                           {"paper", 32, 0.1},
-                                           {"paper", 64, 0.99},
-                                           {"cone", 32, 0.6},
-                                           {"cone", 64, 0.9}}) {
+  const std::vector<std::tuple<const char*, int, double>> loaded{
+      {"paper", 112, 0.99}, {"paper", 128, 0.05}, {"paper", 136, 0.05}, {"paper", 136, 0.2},
+      {"paper", 32, 0.1},   {"paper", 64, 0.99},  {"cone", 32, 0.6},    {"cone", 64, 0.9}};
+  for (const auto& [name, cells, ratio] : loaded) {
     const solver::Scene scene = scene_of(name, cells, {fmt::format("load.moment_ratio={}", ratio)});
     find_good(sampled(scene), scene, find_oracle(scene).oracle->twist_angle);
   }

@@ -25,14 +25,14 @@ struct RightField {
   double of_cells(double cells) const { return cells / static_cast<double>(solution.contact_cells); }
 };
 
-const RightField& right_field() {
-  static const RightField field{scene_of("paper", 32)};
-  return field;
-}
+/// That of the paper's scene on a coarse grid, and what it becomes.
+class CheckThreshold : public testing::Test {
+ protected:
+  inline static const RightField field{scene_of("paper", 32)};
+};
 
 // A field that solves its own grid's problem is allowed 2/n, with n contact cells.
-TEST(CheckThreshold, OfLoadsAndTwistIsTheQuadrature) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfLoadsAndTwistIsTheQuadrature) {
   const double twist = field.solution.twist_angle;
   for (const double sign : {1.0, -1.0}) {
     const double below = 1.0 + sign * kBelow * field.of_cells(2.0);
@@ -50,7 +50,7 @@ TEST(CheckThreshold, OfLoadsAndTwistIsTheQuadrature) {
 }
 
 // Forces are parts of mu W, which is 100 N.
-TEST(CheckThreshold, OfForcesIsTheQuadrature) {
+TEST_F(CheckThreshold, OfForcesIsTheQuadrature) {
   const auto scene = [](double more) {
     return scene_of("paper", 32, {"load.moment_ratio=0.5", fmt::format("load.force=[{}, 20]", 30.0 + more)});
   };
@@ -60,8 +60,7 @@ TEST(CheckThreshold, OfForcesIsTheQuadrature) {
 }
 
 // One cell. The contact radius is proportional to the modulus to the power -1/3.
-TEST(CheckThreshold, OfTheContactRadiusIsOneCell) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfTheContactRadiusIsOneCell) {
   const double radius = find_oracle(field.scene).oracle->contact_radius;
   const double cell = field.solution.grid.h1 / radius;
   for (const double times : {kBelow, kAbove, -kBelow, -kAbove}) {
@@ -88,8 +87,7 @@ void scale_tractions(FieldRow& row, double factor) { row[3] *= factor, row[4] *=
 constexpr double kSlipping = 1.0 - 1e-9;
 
 // A thousandth, in any one cell.
-TEST(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
   const auto largest = std::ranges::max_element(
       field.rows, {}, [](const FieldRow& row) { return std::hypot(row[3], row[4]); });
   const auto place = static_cast<std::size_t>(largest - field.rows.begin());
@@ -104,8 +102,7 @@ TEST(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
 }
 
 // The median of the ring: a thousandth, and twice what right fields of this mesh show.
-TEST(CheckThreshold, OfFrictionIsAThousandthAndTheMesh) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfFrictionIsAThousandthAndTheMesh) {
   const double allowed_here = allowed(check_rows(field.rows, field.scene), "friction");
   EXPECT_GE(allowed_here, 1e-3);
   const solver::Scene finer = scene_of("paper", 64);
@@ -135,8 +132,7 @@ void turn(FieldRow& row, double degrees) {
 }
 
 // A chessboard of turned tractions hardly moves the surface: slip stays where it was.
-TEST(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
   const Json right = check_rows(field.rows, field.scene);
   const double mesh = right["yardstick"]["slip_direction"];
   EXPECT_NEAR(allowed(right, "slip_direction"), 0.1 + 2.0 * mesh, 1e-6);
@@ -152,8 +148,7 @@ TEST(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
 
 // Two digits leave each component open by a part of 0.05: in the mean over |q|, sqrt(pi/2) times that as an
 // angle, and twice. The rounding also counts as noise, of 0.003 at most.
-TEST(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
   const Json result = find_good(with_digits(field.rows, {3, 4}, 2), field.scene);
   const double of_digits = 0.05 * std::sqrt(0.5 * std::numbers::pi) * 180.0 / std::numbers::pi;
   const double mesh = result["yardstick"]["slip_direction"];
@@ -164,8 +159,7 @@ TEST(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
 
 // A chessboard in stick cells meets no bound: the tractions are as far from the right ones as the test makes
 // them.
-TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
   const Json right = check_rows(field.rows, field.scene);
   const double mesh = right["yardstick"]["mesh_error"];
   EXPECT_NEAR(allowed(right, "tractions"), 2.0 * mesh, 1e-9);
@@ -189,7 +183,7 @@ TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
 }
 
 // Any iteration is allowed 1e-5, and the mesh twice what right fields show, at most 1e-3 with constant cells.
-TEST(CheckThreshold, OfTheGapIsTheIterationsAndTheMeshs) {
+TEST_F(CheckThreshold, OfTheGapIsTheIterationsAndTheMeshs) {
   struct Gap {
     double allowed;
     double of_mesh;
@@ -233,8 +227,8 @@ FieldRows averaged(FieldRows rows, const Oracle& oracle) {
 
 // The mesh error is that of the worse one of two right fields, samples at the cells' centres and means over
 // the cells. check measures it by a solve on cells a third as large; here the exact fields show it.
-TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
-  const solver::Scene& scene = right_field().scene;
+TEST_F(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
+  const solver::Scene& scene = field.scene;
   const FieldRows at_centres = sampled(scene);
   const Json one = check_rows(at_centres, scene);
   const Json other = check_rows(averaged(at_centres, *find_oracle(scene).oracle), scene);
@@ -250,7 +244,7 @@ TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
 }
 
 // Samples of an exact field miss a part of the normal load, and a force in parts of mu W.
-TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
+TEST_F(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
   const solver::Scene scene = scene_of("mindlin", 32);
   const FieldRows rows = sampled(scene);
   const Examination e = examine(scene, write_rows(rows), {});
@@ -267,8 +261,7 @@ TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
 }
 
 // The upper quartile of a normal distribution says how much noise |q| has, up to 0.3 %.
-TEST(CheckThreshold, OfNoiseIsThreeThousandths) {
-  const RightField& field = right_field();
+TEST_F(CheckThreshold, OfNoiseIsThreeThousandths) {
   for (const double noise : {1e-3, 2e-3, 1e-2}) {
     std::mt19937 random(3);
     std::normal_distribution<double> factor(1.0, noise);

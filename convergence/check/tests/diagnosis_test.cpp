@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "convergence/check/given_contact.hpp"
 #include "solver/contact/projected_gradient.hpp"

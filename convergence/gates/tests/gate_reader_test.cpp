@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/tests/complaint.hpp"
 

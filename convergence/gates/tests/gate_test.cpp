@@ -17,22 +17,18 @@ Outcome outcome(const Gate& gate, const Json& value) {
 
 TEST(Gate, BelowAloneBoundsTheSize) {
   const Gate gate = below("twist_error", 2e-5);
-  EXPECT_EQ(outcome(gate, 1.9e-5), Outcome::passed);
-  EXPECT_EQ(outcome(gate, -1.9e-5), Outcome::passed);
-  EXPECT_EQ(outcome(gate, 2e-5), Outcome::failed);
-  EXPECT_EQ(outcome(gate, 2.1e-5), Outcome::failed);
-  EXPECT_EQ(outcome(gate, -2.1e-5), Outcome::failed);
+  for (const double value : {1.9e-5, -1.9e-5}) EXPECT_EQ(outcome(gate, value), Outcome::passed) << value;
+  for (const double value : {2e-5, 2.1e-5, -2.1e-5})
+    EXPECT_EQ(outcome(gate, value), Outcome::failed) << value;
 }
 
 TEST(Gate, BelowAndAboveBoundTheSignedValue) {
   const Gate gate = between("order", 1.0, 2.0);
   EXPECT_EQ(outcome(gate, 1.5), Outcome::passed);
-  for (const double value : {0.9, 1.0, 2.0, 2.1, -1.5})
-    EXPECT_EQ(outcome(gate, value), Outcome::failed) << value;
+  for (const double off : {0.9, 1.0, 2.0, 2.1, -1.5}) EXPECT_EQ(outcome(gate, off), Outcome::failed) << off;
   const Gate negative = between("twist_error", -3e-3, -1e-3);
   EXPECT_EQ(outcome(negative, -2e-3), Outcome::passed);
-  EXPECT_EQ(outcome(negative, 2e-3), Outcome::failed);
-  EXPECT_EQ(outcome(negative, 0.0), Outcome::failed);
+  for (const double off : {2e-3, 0.0}) EXPECT_EQ(outcome(negative, off), Outcome::failed) << off;
 }
 
 TEST(Gate, AboveAloneBoundsTheSignedValue) {

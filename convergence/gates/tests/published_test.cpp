@@ -1,6 +1,6 @@
 // Which numbers of the literature agree with ours.
 
-#include "convergence/gates/published.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <string>
 
 #include "convergence/gates/gate.hpp"
 #include "solver/input/tests/fuzz_file.hpp"

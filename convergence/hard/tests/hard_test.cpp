@@ -1,14 +1,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
 #include "convergence/hard/hard_case.hpp"
-#include "convergence/hard/hard_judgement.hpp"
+#include "convergence/hard/hard_run.hpp"
 #include "convergence/runs/variant.hpp"
 #include "convergence/system/run_program.hpp"
 #include "convergence/tests/scratch_folder.hpp"

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "analytic/layered/layered_pair.hpp"
 #include "convergence/laws/contact_law.hpp"

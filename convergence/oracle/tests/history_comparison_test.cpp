@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "analytic/tangential_history.hpp"
 #include "convergence/oracle/errors.hpp"
@@ -72,6 +71,13 @@ const Scene& plain() {
   return scene;
 }
 
+/// Forces one after another under 1000 N.
+Scene forced(const std::vector<double>& forces) {
+  std::vector<Push> pushes;
+  for (const double force : forces) pushes.push_back({1000.0, force});
+  return pushed(plain(), pushes);
+}
+
 /// Masing's rule holds on any mesh: after a reversal slip starts anew against twice the friction. So the
 /// errors at all reversals are those of first loading.
 void expect_every_reversal_as_good_as_the_first(const Scene& cycle) {
@@ -100,8 +106,7 @@ TEST(HistoryComparison, TorsionTurnsBackAndForth) {
 }
 
 TEST(HistoryComparison, AForceGoesBackAndForth) {
-  expect_every_reversal_as_good_as_the_first(
-      pushed(plain(), {{1000.0, 80.0}, {1000.0, -80.0}, {1000.0, 80.0}, {1000.0, -80.0}}));
+  expect_every_reversal_as_good_as_the_first(forced({80.0, -80.0, 80.0, -80.0}));
 }
 
 /// Errors stay those of first loading in size, though the answers become smaller: residual states, loops
@@ -122,21 +127,14 @@ void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radi
 
 TEST(HistoryComparison, SmallCyclesInALargeOne) {
   expect_errors_of_first_loading(twisted(steel(), {0.8, -0.8, 0.3, -0.2, 0.25}), 62);
-  expect_errors_of_first_loading(
-      pushed(plain(), {{1000.0, 80.0}, {1000.0, -80.0}, {1000.0, 30.0}, {1000.0, -20.0}, {1000.0, 25.0}}),
-      62);
+  expect_errors_of_first_loading(forced({80.0, -80.0, 30.0, -20.0, 25.0}), 62);
 }
 
 /// A loop that closes is forgotten: from 0.3 down to -0.2 and back, the state is the one before; then on to
 /// 0.8 as if there had been no loop.
 TEST(HistoryComparison, AClosedLoopIsForgotten) {
   for (const Scene& scene :
-       {twisted(steel(), {0.8, -0.8, 0.3, -0.2, 0.3, 0.8}), pushed(plain(), {{1000.0, 80.0},
-                                                                             {1000.0, -80.0},
-                                                                             {1000.0, 30.0},
-                                                                             {1000.0, -20.0},
-                                                                             {1000.0, 30.0},
-                                                                             {1000.0, 80.0}})}) {
+       {twisted(steel(), {0.8, -0.8, 0.3, -0.2, 0.3, 0.8}), forced({80.0, -80.0, 30.0, -20.0, 30.0, 80.0})}) {
     const std::vector<State> states = follow(on_cells(scene, 64));
     for (const auto& [before, after] : {std::pair(2, 4), std::pair(0, 5)}) {
       const Solution& a = states[before].solution;

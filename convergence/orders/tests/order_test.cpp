@@ -15,6 +15,12 @@ using enum OrderVerdict;
 
 OrderVerdict verdict(const Meshes& errors, double expected) { return fit_order(errors, expected).verdict; }
 
+/// Means over so many grids each, with a spread that is a part of the error.
+Meshes spread_over(Meshes errors, int grids, double part) {
+  for (MeshSample& error : errors) error.grids = grids, error.spread = part * error.value;
+  return errors;
+}
+
 void expect_found(double order, const std::vector<double>& sizes) {
   const Order found = fit_order(power(order, sizes, -0.3), order);
   EXPECT_NEAR(found.value, order, kLogRounding);
@@ -56,15 +62,10 @@ TEST(Order, IntervalIsStudents) {
 /// Means of three grids, each mesh with the same relative spread s: all weigh alike, and the slope's standard
 /// error is s/sqrt(3) over the root of the sum of squares of log size, (0.5 + 0.5) log(2)^2 ... 2 log(2)^2.
 TEST(Order, KnownSpreadGivesTheInterval) {
-  Meshes errors = power(1.0, {1.0, 0.5, 0.25});
   constexpr double spread = 0.02;
-  for (MeshSample& error : errors) {
-    error.spread = spread * error.value;
-    error.grids = 3;
-  }
   constexpr double quantile = 2.446911851144969;  // Student's of 3 (3 - 1) degrees of freedom
   const double half = quantile * spread / std::sqrt(3.0) / (std::sqrt(2.0) * std::log(2.0));
-  const Order found = fit_order(errors, 1.0);
+  const Order found = fit_order(spread_over(power(1.0, {1.0, 0.5, 0.25}), 3, spread), 1.0);
   EXPECT_NEAR(found.high - found.value, half, 1e-9);
   EXPECT_NEAR(found.value - found.low, half, 1e-9);
   EXPECT_EQ(found.verdict, asymptotic);
@@ -83,12 +84,7 @@ TEST(Order, AMeshWithoutANoiseTakesNoPart) {
 
 /// A residual that the spread does not explain widens the interval.
 TEST(Order, SpreadTooSmallForTheResidualsIsNotBelieved) {
-  Meshes errors = made({1.0, 0.5, 0.5, 0.25});
-  for (MeshSample& error : errors) {
-    error.grids = 4;
-    error.spread = 1e-3 * error.value;
-  }
-  const Order found = fit_order(errors, 0.6);
+  const Order found = fit_order(spread_over(made({1.0, 0.5, 0.5, 0.25}), 4, 1e-3), 0.6);
   EXPECT_NEAR(found.high - found.value, 4.302652729911275 * std::sqrt(0.02), 1e-6);
 }
 
@@ -189,13 +185,10 @@ TEST(OrderVerdict, OneEarlyChangeOfSignIsLeftBehind) {
 
 /// A rise that the scatter explains is none.
 TEST(OrderVerdict, ScatterIsNoOscillation) {
-  Meshes errors = made({1.0, 0.5, 0.51, 0.13, 0.06});
+  const Meshes errors = made({1.0, 0.5, 0.51, 0.13, 0.06});
   EXPECT_EQ(verdict(errors, 1.0), oscillatory);
-  for (MeshSample& error : errors) {
-    error.grids = 4;
-    error.spread = 0.5 * error.value;
-  }
-  EXPECT_EQ(verdict(errors, 1.0), asymptotic) << fit_order(errors, 1.0).why;
+  const Order scattered = fit_order(spread_over(errors, 4, 0.5), 1.0);
+  EXPECT_EQ(scattered.verdict, asymptotic) << scattered.why;
 }
 
 TEST(OrderVerdict, FloorOfNoise) {
@@ -244,12 +237,7 @@ TEST(OrderVerdict, WithoutAnExpectedOrderIsPreasymptotic) {
 }
 
 TEST(OrderVerdict, TooUncertainIsPreasymptotic) {
-  Meshes errors = power(1.0, {1.0, 0.5, 0.25});
-  for (MeshSample& error : errors) {
-    error.grids = 2;
-    error.spread = 0.3 * error.value;
-  }
-  EXPECT_EQ(verdict(errors, 1.0), preasymptotic);
+  EXPECT_EQ(verdict(spread_over(power(1.0, {1.0, 0.5, 0.25}), 2, 0.3), 1.0), preasymptotic);
 }
 
 TEST(OrderVerdict, TooLowIsPreasymptotic) {

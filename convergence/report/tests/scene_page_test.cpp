@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
-#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/run_spec.hpp"

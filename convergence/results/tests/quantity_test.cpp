@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "convergence/results/result_parts.hpp"
-
 namespace slipstick::convergence {
 namespace {
 

@@ -4,9 +4,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <thread>
 
 #include "convergence/runs/result_cache.hpp"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"

@@ -52,17 +52,13 @@ const std::string kHalfTheLimit = "load.moment_ratio=0.5";
 // and under a punch, whose edge is singular. Where there is none, as of a rough surface, it is 1.
 TEST(ReachedError, OfANumberIsThreeTimesTheExtrapolatedDistance) {
   const double apart = kApart / (1.0 + kApart);
-  struct Case {
-    const char* scene;
-    AccuracyOf of;
-    double order;
-  };
   for (const auto& [scene, of, order] :
-       {Case{"paper", AccuracyOf::twist, 2.0}, Case{"paper", AccuracyOf::stick_radius, 1.0},
-        Case{"flat_punch", AccuracyOf::twist, 1.0}, Case{"rough_sphere", AccuracyOf::twist, 1.0}}) {
+       std::vector<std::tuple<std::string, AccuracyOf, double>>{{"paper", AccuracyOf::twist, 2.0},
+                                                                {"paper", AccuracyOf::stick_radius, 1.0},
+                                                                {"flat_punch", AccuracyOf::twist, 1.0},
+                                                                {"rough_sphere", AccuracyOf::twist, 1.0}}) {
     const ReachedError found =
-        TwoMeshes(scene, std::string(scene) == "flat_punch" ? "load.moment_ratio=0.9" : kHalfTheLimit,
-                  1.0 + kApart)
+        TwoMeshes(scene, scene == "flat_punch" ? "load.moment_ratio=0.9" : kHalfTheLimit, 1.0 + kApart)
             .error(of);
     EXPECT_EQ(found.how, "estimated") << scene;
     EXPECT_NEAR(found.error, 3.0 * apart / (std::exp2(order) - 1.0), 1e-6) << scene;

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
@@ -152,8 +149,7 @@ TEST(StatedOfHistories, CoversPressuresThatAreNotSolved) {
 // From the middle out along an axis and a diagonal, whose first cell is the same one.
 TEST(Profile, HasTheMiddleCellOnce) {
   for (const int cells : {16, 17}) {
-    const solver::Scene scene = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/paper.toml",
-                                                   {fmt::format("grid.cells=[{0},{0}]", cells)});
+    const Scene scene = scene_of("paper", cells);
     std::vector<double> radii;
     for (const Json& row : profile_json(solver::solve(scene), find_oracle(scene)))
       radii.push_back(row["radius"]);

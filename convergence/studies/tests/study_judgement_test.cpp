@@ -1,14 +1,11 @@
 // What a study says where results are missing: means over those that are there, no zero for what is not
 // known, a reason beside every null, and a word about what failed.
 
-#include "convergence/studies/study_judgement.hpp"
+#include "convergence/studies/study_plan.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/studies/budget.hpp"

@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "convergence/studies/study_judgement.hpp"
+#include "convergence/studies/study_plan.hpp"
 
 namespace slipstick::convergence {
 namespace {

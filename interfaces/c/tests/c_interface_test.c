@@ -130,6 +130,8 @@ static const char* const kScene =
     "[lower]\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n[contact]\nfriction = 0.1\n"
     "[load]\nnormal = 1000.0\nmoment_ratio = 0.9\n[grid]\ncells = [48, 48]\n";
 
+static const char* const kExactModel = "solver.model=exact";
+
 static slipstick_solution* solved(int status, double accuracy, size_t count, const char* const* overrides) {
   slipstick_solution* solution = NULL;
   check(slipstick_solve(kScene, "made.toml", count, overrides, accuracy, NULL, NULL, &solution) == status,
@@ -153,8 +155,7 @@ static const double* field(const slipstick_solution* solution, const char* name,
 
 static void test_solution(void) {
   slipstick_solution* solution = solved(SLIPSTICK_OK, 0, 0, NULL);
-  const char* exact_model[] = {"solver.model=exact"};
-  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, exact_model);
+  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, &kExactModel);
   check(near(number(solution, "twist_angle"), number(exact, "twist_angle"), 1e-3),
         "the grid's twist is the exact one");
   check(number(solution, "certificate.gap") <= 1e-8, "Coulomb's law holds");
@@ -190,8 +191,7 @@ static void test_solution(void) {
 
 /* Numbers, fields and formats that do not exist. */
 static void test_refusals_of_a_solution(void) {
-  const char* exact_model[] = {"solver.model=exact"};
-  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, exact_model);
+  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, &kExactModel);
   double value = 0;
   check(slipstick_solution_number(exact, "twist_angel", &value) == SLIPSTICK_BAD_INPUT && isnan(value) &&
             says("twist_angel"),
@@ -237,15 +237,12 @@ static void test_ends(void) {
   check(slipstick_solve(kScene, NULL, 0, NULL, 0, stop_at_once, &calls, &solution) == SLIPSTICK_STOPPED &&
             calls == 1 && solution == NULL,
         "the caller may stop a solve");
-  const char* hurried[] = {"solver.max_iterations=1"};
-  solution = solved(SLIPSTICK_NOT_CONVERGED, 0, 1, hurried);
+  solution = solved(SLIPSTICK_NOT_CONVERGED, 0, 1, &(const char*){"solver.max_iterations=1"});
   check(strlen(slipstick_message()) > 0, "it says why it did not converge");
   slipstick_solution_free(solution);
-  const char* slipping[] = {"load.moment_ratio=1.5"};
-  solved(SLIPSTICK_BAD_INPUT, 0, 1, slipping);
+  solved(SLIPSTICK_BAD_INPUT, 0, 1, &(const char*){"load.moment_ratio=1.5"});
   check(says("moment_ratio"), "gross slip is refused");
-  const char* unknown[] = {"contact.frictoin=0.2"};
-  solved(SLIPSTICK_BAD_INPUT, 0, 1, unknown);
+  solved(SLIPSTICK_BAD_INPUT, 0, 1, &(const char*){"contact.frictoin=0.2"});
   check(says("contact.friction"), "the nearest key is named");
   check(slipstick_solve("[upper]\nshape = \"shpere\"\n", "mine.toml", 0, NULL, 0, NULL, NULL, &solution) ==
                 SLIPSTICK_BAD_INPUT &&
@@ -257,8 +254,7 @@ static void test_ends(void) {
       "a file that is missing");
   check(slipstick_solve(kScene, NULL, 0, NULL, 0, NULL, NULL, NULL) == SLIPSTICK_BAD_INPUT,
         "nowhere to put it");
-  const char* on_grid[] = {"solver.model=auto"};
-  solution = solved(SLIPSTICK_OK, 1e-3, 1, on_grid);
+  solution = solved(SLIPSTICK_OK, 1e-3, 1, &(const char*){"solver.model=auto"});
   check(fabs(number(solution, "twist_error")) <= 1e-3 && number(solution, "accuracy.reached") <= 1e-3,
         "an accuracy is reached");
   check(strstr(slipstick_solution_text(solution), "0.001 wanted") != NULL, "the text says which was wanted");

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-
 #include "solver/grid/grid.hpp"
 
 namespace slipstick::solver {

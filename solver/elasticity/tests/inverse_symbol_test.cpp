@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/fft/fftw.hpp"

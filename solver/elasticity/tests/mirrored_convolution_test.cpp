@@ -4,7 +4,6 @@
 
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/grid/mirror.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "solver/grid/mirror.hpp"
 #include "solver/tests/fields.hpp"

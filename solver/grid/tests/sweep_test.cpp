@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
-#include <vector>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/tests/fields.hpp"

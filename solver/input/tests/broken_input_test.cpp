@@ -5,7 +5,6 @@
 #include <hdf5_hl.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <random>
 

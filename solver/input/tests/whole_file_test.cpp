@@ -10,10 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <functional>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/tests/complaint.hpp"

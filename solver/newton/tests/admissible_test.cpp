@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <random>
 
 namespace slipstick::solver {

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <limits>
-
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/tests/torsion_bench.hpp"

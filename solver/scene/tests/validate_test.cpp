@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <functional>
-#include <vector>
-
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/scene/scene.hpp"

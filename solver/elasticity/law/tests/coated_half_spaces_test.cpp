@@ -10,8 +10,6 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/direct.hpp"

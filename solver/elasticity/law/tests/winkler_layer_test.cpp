@@ -5,8 +5,6 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <vector>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/tests/fields.hpp"
