@@ -118,10 +118,7 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
 }
 
 /// Whether the scene has no tangential force and imposes no displacement.
-bool is_torsion(const solver::Scene& scene) {
-  const solver::Step& load = scene.steps.front();
-  return !load.displacement && load.force == std::array<double, 2>{};
-}
+bool is_torsion(const solver::Scene& scene) { return !solver::brings_translation(scene.steps.front()); }
 
 /// Judges motion and tractions. Where Coulomb's law is broken, an inferred twist means little: no sentence
 /// mentions it.

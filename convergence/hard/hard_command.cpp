@@ -39,8 +39,7 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
   std::vector<HardCase> cases;
   for (const std::string& file : request.files) {
     for (HardCase& made : read_hard_cases(file)) {
-      made.run.overrides.insert(made.run.overrides.end(), request.runs.overrides.begin(),
-                                request.runs.overrides.end());
+      made.run = changed(std::move(made.run), request.runs.overrides);
       cases.push_back(std::move(made));
     }
   }

@@ -47,8 +47,7 @@ RunSpec seen(const Trial& trial, Variant variant) {
   spec.fields.clear();
   spec.variant = variant;
   if (has_given_grid(*trial.scene)) return spec;
-  for (std::string& key : grid_of(trial.result)) spec.overrides.push_back(std::move(key));
-  return spec;
+  return changed(std::move(spec), grid_of(trial.result));
 }
 
 /// The worse of two verdicts stands, with its reason.
@@ -111,8 +110,7 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
   for (Trial& trial : trials) {
     if (!needs_finer_meshes(trial)) continue;
     for (const int finer : {2, 4}) {
-      RunSpec spec = trial.hard->run;
-      for (std::string& key : grid_of(trial.result, finer)) spec.overrides.push_back(std::move(key));
+      RunSpec spec = changed(trial.hard->run, grid_of(trial.result, finer));
       spec.overrides.push_back(fmt::format("solver.substeps={}", finer * trial.scene->substeps));
       batch.add_or_refuse(spec, [&trial, &refused, &found](const Json& result) {
         if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
@@ -142,8 +140,7 @@ void compare_methods(std::vector<Trial>& trials, const std::vector<BesideMethod>
   for (const auto& [method, override, is_program] : methods) {
     RunBatch batch;
     for (Trial& trial : trials) {
-      RunSpec spec = trial.hard->run;
-      spec.overrides.push_back(override);
+      const RunSpec spec = changed(trial.hard->run, {override});
       batch.add_or_refuse(spec, [&trial, method = method, is_program = is_program](const Json& result) {
         const bool failed = is_program && result["status"] == "failed";  // and says so
         const ComparedAnswer compared =

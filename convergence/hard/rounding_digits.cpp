@@ -55,8 +55,7 @@ Json rounding_digits(const RunSpec& spec, const DigitsOptions& options, const Pr
   }
   std::vector<RunSpec> runs{spec};
   for (int i = 0; i < options.samples; ++i) {
-    runs.push_back(spec);
-    runs.back().overrides.push_back(fmt::format("solver.rounding_seed={}", options.first_seed + i));
+    runs.push_back(changed(spec, {fmt::format("solver.rounding_seed={}", options.first_seed + i)}));
   }
   const std::vector<Json> results = pool.run(runs);
   const Json& nearest = results.front();

@@ -1,5 +1,6 @@
 #include "convergence/runs/variant.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -122,13 +123,6 @@ constexpr std::array kViews{View{Variant::mirrored, "mirrored", mirror},
                             View{Variant::two_threads, "two_threads", take_two_threads}};
 static_assert(kViews.size() == kVariants.size());
 
-bool acts_along_the_surface(const Scene& scene) {
-  for (const solver::Step& step : scene.steps) {
-    if (step.displacement || step.force[0] != 0.0 || step.force[1] != 0.0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string to_string(Variant variant) {
@@ -152,7 +146,8 @@ std::string why_not(const Scene& scene, Variant variant) {
   if (variant == Variant::exchanged) return "";
   if (!scene.friction.map.empty() && variant != Variant::in_other_units)
     return "the friction is read on the grid's own axes";
-  if (variant == Variant::shifted && acts_along_the_surface(scene)) return "moments are about the origin";
+  if (variant == Variant::shifted && std::ranges::any_of(scene.steps, solver::brings_translation))
+    return "moments are about the origin";
   if (variant == Variant::shifted && scene.pressure != solver::PressureModel::solved) {
     return "the given pressure stands at the origin";
   }

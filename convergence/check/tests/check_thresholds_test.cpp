@@ -28,7 +28,7 @@ struct RightField {
 /// That of the paper's scene on a coarse grid, and what it becomes.
 class CheckThreshold : public testing::Test {
  protected:
-  inline static const RightField field{scene_of("paper", 32)};
+  const RightField field{scene_of("paper", 32)};
 };
 
 // A field that solves its own grid's problem is allowed 2/n, with n contact cells.

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "convergence/check/given_contact.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/pressure.hpp"
@@ -67,8 +68,7 @@ GivenContact made_contact(const solver::Dimensionless& model, const Eigen::Array
 GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
                            const std::string& name = "ellipse", double poisson = 1.0) {
   const solver::Scene scene =
-      solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml",
-                         {name == "ellipse" ? "grid.cells=[24,12]" : "grid.cells=[20,20]"});
+      example(name, {name == "ellipse" ? "grid.cells=[24,12]" : "grid.cells=[20,20]"});
   const solver::Model model = solver::make_model(scene);
   const solver::Step& load = scene.steps.front();
   const Eigen::ArrayXd pressure = find_pressure(scene, model, load).pressure;
@@ -120,8 +120,7 @@ TEST(Diagnosis, FindsNoMistakeInTheRightKernel) {
 
 /// The field of bodies with another Poisson's ratio and the same contact modulus E/(1 - nu^2).
 GivenContact with_poissons_ratio(double ratio) {
-  solver::Scene scene =
-      solver::read_scene(std::string(SLIPSTICK_SCENES) + "/ellipse.toml", {"grid.cells=[32,16]"});
+  solver::Scene scene = example("ellipse", {"grid.cells=[32,16]"});
   const solver::Model model = solver::make_model(scene);
   for (solver::Material* material : {&scene.upper, &scene.lower}) {
     material->young_modulus *= (1.0 - ratio * ratio) / (1.0 - 0.3 * 0.3);

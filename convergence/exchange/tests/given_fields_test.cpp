@@ -71,7 +71,8 @@ TEST(GivenFields, OfAHistoryOrAnotherGridAreRefused) {
 
 // E*, G and nu of a pair, by hand.
 TEST(PosedScene, HasThePairsConstants) {
-  const PosedScene posed = pose(scene_with({"lower.young_modulus=70e9", "lower.poisson_ratio=0.25"}), true);
+  const solver::Scene scene = scene_with({"lower.young_modulus=70e9", "lower.poisson_ratio=0.25"});
+  const PosedScene posed = pose(scene, true);
   const double upper = 210e9 / 2.6;
   const double lower = 70e9 / 2.5;
   EXPECT_NEAR(posed.shear_modulus, 1.0 / (1.0 / upper + 1.0 / lower), 1.0);
@@ -79,8 +80,7 @@ TEST(PosedScene, HasThePairsConstants) {
   EXPECT_NEAR(posed.poisson_ratio, (0.3 / upper + 0.25 / lower) * posed.shear_modulus, 1e-12);
   EXPECT_NEAR(posed.mismatch, 0.5 / lower - 0.4 / upper, 1e-22);
   EXPECT_EQ(posed.pressure.size(), 0);
-  const solver::Solution solved =
-      solver::solve(scene_with({"lower.young_modulus=70e9", "lower.poisson_ratio=0.25"}));
+  const solver::Solution solved = solver::solve(scene);
   EXPECT_NEAR(posed.moment_limit, solved.moment_limit, 1e-9 * solved.moment_limit);
 }
 

@@ -12,8 +12,8 @@
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/tests/complaint.hpp"
-#include "solver/input/tests/scratch_folder.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -119,7 +119,7 @@ TEST(Scenes, HaveTheExactAnswersThatTheoryHas) {
       "spence",       "spence_sphere", "fretting_force", "fretting_torsion", "growing_load",
       "torsion_loop", "coated_sphere", "rubber_lens",    "capped_friction"};
   for (const std::string& name : scene_names()) {
-    const auto oracle = find_oracle(solver::read_scene(fs::path(SLIPSTICK_SCENES) / (name + ".toml"))).oracle;
+    const auto oracle = find_oracle(example(name)).oracle;
     EXPECT_EQ(oracle && oracle->only_normal.empty(), exact.contains(name)) << name;
   }
 }
@@ -146,9 +146,8 @@ TEST_F(ScenePage, JudgesByWhatIsWanted) {
   };
   EXPECT_EQ(verdict(1.01 * error), "holds");
   EXPECT_EQ(verdict(0.99 * error), "fails");
-  EXPECT_THAT(solver::complaint([&] {
-                page(file("paper"), {{"radius", 0.1}});
-              }),
+  const auto ask = [&] { page(file("paper"), {{"radius", 0.1}}); };
+  EXPECT_THAT(solver::complaint(ask),
               AllOf(HasSubstr("--want"), HasSubstr("radius"), HasSubstr("twist_angle, moment")));
 }
 
