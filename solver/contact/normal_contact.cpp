@@ -97,7 +97,10 @@ class PressureOnGrid {
     const double lowest = lowest_of(cells_);
     const double overlooked = lowest - lowest_of(reachable_);
     result.newton.gap += overlooked * total_pressure_ / energy;
-    if (result.newton.gap <= tolerance) return false;
+    if (!(result.newton.gap > tolerance)) {
+      result.newton.converged = result.newton.gap <= tolerance;
+      return false;
+    }
     result.field = packing_.unpacked(result.field);
     look_at([&](Index i) {
       return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + overlooked;

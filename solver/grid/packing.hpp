@@ -58,7 +58,7 @@ class Packing {
   Sweep grid_, cells_, packed_;  ///< all cells, those that are kept, and these packed
   std::shared_ptr<const Eigen::ArrayXd> coordinates_;
   // Where not all cells are kept:
-  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1
+  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1; 0: nowhere
   Eigen::ArrayXd on_grid_;
 };
 
