@@ -66,7 +66,7 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
                            {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),
                             .refine_approach = goal.gap == 0.0,
                             .progress = progress,
-                            .know_cells = [&](double of_cells) {
+                            .on_cells_known = [&](double of_cells) {
                               require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
                             }});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);

@@ -175,7 +175,7 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
                                     .max_applications = scene.max_iterations,
                                     .refine_motion = gap == 0.0,
                                     .progress = progress,
-                                    .know_cells = [&](double of_cells) {
+                                    .on_cells_known = [&](double of_cells) {
                                       require_memory(scene, model, {.pressure = 0.0, .tractions = of_cells});
                                     }});
   }

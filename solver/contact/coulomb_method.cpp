@@ -198,8 +198,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                 .twist = problem.twist,
                                 .force = problem.force,
                                 .displacement = problem.displacement};
-  NestedSummary nested =
-      solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton, options.know_cells);
+  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton,
+                                      options.on_cells_known);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

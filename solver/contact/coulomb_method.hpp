@@ -13,7 +13,7 @@ struct CoulombOptions {
   bool refine_motion = true;  ///< to the tolerance, at some applications more where it needs be
   /// Called in each step on the finest grid with the applications there and gap over energy.
   std::function<void(int applications, double gap)> progress = {};
-  KnowCells know_cells = {};
+  OnCellsKnown on_cells_known = {};
 };
 
 /// Coulomb's law in every cell, certified: minimises the elastic energy over the friction discs under the

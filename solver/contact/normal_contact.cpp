@@ -79,8 +79,10 @@ class PressureOnGrid {
 
   /// Whether other cells open less than those that were looked at. The gap is that of all then.
   bool overlooks(LinearOperator& op, NestedSummary& result, double tolerance) {
-    displacement_ = packing_.unpacked(result.displacement);
-    if (!result.newton.converged || cells_.count() == reachable_.count()) return false;
+    if (!result.newton.converged || cells_.count() == reachable_.count()) {
+      displacement_ = packing_.unpacked(result.displacement);
+      return false;
+    }
     const double energy = 0.5 * packing_.cells().sum<double>([&](Index first, Index last, double& sum) {
       const Index n = last - first;
       sum += (result.field.segment(first, n) * result.displacement.segment(first, n)).sum();
@@ -132,7 +134,7 @@ class PressureOnGrid {
   Packing packing_;
   MotionField packed_approach_ = approach_;
   ArrayXd heights_;       ///< packed
-  ArrayXd displacement_;  ///< K p of all cells
+  ArrayXd displacement_;  ///< K p, of all cells once some were left out
 };
 
 void require_valid(const NormalProblem& problem, const Grid& grid) {
@@ -153,7 +155,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,
                              .progress = options.progress};
-  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton, options.know_cells);
+  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton, options.on_cells_known);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

@@ -24,7 +24,7 @@ struct NormalOptions {
   bool refine_approach = true;  ///< to the tolerance, at some applications more where it needs be
   long max_applications = 2000;
   std::function<void(long applications, double gap)> progress = {};  ///< on the finest grid
-  KnowCells know_cells = {};
+  OnCellsKnown on_cells_known = {};
 };
 
 struct NormalSolution {

@@ -48,7 +48,7 @@ struct GridOperators {
 };
 
 /// Told which part of the finest grid's cells Newton's method looks at, before it begins there; it may throw.
-using KnowCells = std::function<void(double part)>;
+using OnCellsKnown = std::function<void(double part)>;
 
 /// Applications on all grids, in those of the last, finest one: each weighs by its cells.
 double finest_grid_applications(const std::vector<GridWork>& grids);

@@ -57,7 +57,7 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
 template <NestedProblem Problem>
 void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                    const Coefficients& multipliers, NewtonOptions options, bool guessed,
-                   const KnowCells& know_cells, NestedSummary& result) {
+                   const OnCellsKnown& on_cells_known, NestedSummary& result) {
   const auto operators = elasticity.make_all(grid, problem.kernel());
   LinearOperator& op = *operators->op;
   int iterations = 0;
@@ -66,7 +66,7 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
     const ConvexProgram program = problem.program(op);
     Packing& packing = problem.packing();
     result.part = static_cast<double>(packing.cells().size()) / static_cast<double>(grid.cells());
-    if (know_cells) know_cells(result.part);
+    if (on_cells_known) on_cells_known(result.part);
     const auto admissible = problem.admissible();
     result.field = packing.packed(result.field);
     NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, op,
@@ -85,7 +85,7 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
 /// displacement are packed.
 template <NestedProblem Problem>
 NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem& problem,
-                             const NewtonOptions& options, const KnowCells& know_cells = {}) {
+                             const NewtonOptions& options, const OnCellsKnown& on_cells_known = {}) {
   NestedSummary result;
   Coefficients multipliers;
   result.field = problem.guess();
@@ -116,7 +116,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   }
   problem.keep_own_rows();
 
-  solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, know_cells, result);
+  solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, on_cells_known, result);
   result.field = problem.packing().unpacked(result.field);
   return result;
 }
@@ -125,8 +125,8 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
 /// displacement is known in the grid's own rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
-                           const NewtonOptions& options, const KnowCells& know_cells) {
-  NestedSummary result = solve_on_grids(elasticity, grid, problem, options, know_cells);
+                           const NewtonOptions& options, const OnCellsKnown& on_cells_known) {
+  NestedSummary result = solve_on_grids(elasticity, grid, problem, options, on_cells_known);
   for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement})
     *field = problem.packing().unpacked(*field);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) share_rows(grid, *field);
