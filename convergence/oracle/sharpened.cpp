@@ -15,31 +15,56 @@ using solver::Index;
 
 constexpr int kCut = 2;    ///< layers of cells along an edge whose means it spoils
 constexpr int kReach = 5;  ///< cells from a cut one within which whole ones are fitted
-constexpr int kDeepest = kCut + kReach + 1;
+constexpr std::int8_t kDeepest = kCut + 2;
 using Depths = std::vector<std::int8_t>;
 /// Whole cells for the six coefficients of a quadratic.
 constexpr int kFewestFitted = 14;
 
-/// How many layers of cells each cell of a set lies deep in it, 1 at its outline, kDeepest at most; 0
-/// outside.
+/// How many layers of cells each cell of a set lies deep in it, 1 at its outline, kDeepest at most; below
+/// zero likewise, how deep outside. Nothing of the set lies beyond the grid.
 template <class Inside>
 Depths depths(const Grid& grid, const Inside& inside) {
   Depths depth(static_cast<std::size_t>(grid.cells()));
-  const auto at = [&](Index i, Index j) {
-    const bool on_grid = i >= 0 && j >= 0 && i < grid.n1 && j < grid.n2;
-    return on_grid ? depth[static_cast<std::size_t>(i * grid.n2 + j)] : 0;
-  };
   for (Index cell = 0; cell < grid.cells(); ++cell)
-    depth[static_cast<std::size_t>(cell)] = inside(cell) ? std::int8_t{kDeepest} : std::int8_t{0};
-  for (const Index back : {1, -1}) {  // down the grid, then up again
-    for (Index step = 0; step < grid.cells(); ++step) {
-      const Index cell = back > 0 ? step : grid.cells() - 1 - step;
+    depth[static_cast<std::size_t>(cell)] = inside(cell) ? kDeepest : static_cast<std::int8_t>(-kDeepest);
+  std::vector<Index> layer;
+  const Depths none(static_cast<std::size_t>(grid.n2), std::int8_t{-1});
+  for (Index i = 0; i < grid.n1; ++i) {
+    const std::int8_t* const row = depth.data() + i * grid.n2;
+    const std::int8_t* const above = i > 0 ? row - grid.n2 : none.data();
+    const std::int8_t* const below = i + 1 < grid.n1 ? row + grid.n2 : none.data();
+    // Of three cells above each other, and of nine about a cell, those that are inside.
+    const auto of_three = [&](Index j) { return (above[j] > 0) + (row[j] > 0) + (below[j] > 0); };
+    int before = 0;
+    int here = of_three(0);
+    for (Index j = 0; j < grid.n2; ++j) {
+      const int after = j + 1 < grid.n2 ? of_three(j + 1) : 0;
+      if (before + here + after != (row[j] > 0 ? 9 : 0)) layer.push_back(i * grid.n2 + j);
+      before = here;
+      here = after;
+    }
+  }
+  const auto set = [&](Index cell, int deep) {
+    std::int8_t& here = depth[static_cast<std::size_t>(cell)];
+    here = static_cast<std::int8_t>(here > 0 ? deep : -deep);
+  };
+  for (const Index cell : layer) set(cell, 1);
+  for (int deep = 2; deep < kDeepest; ++deep) {
+    std::vector<Index> next;
+    for (const Index cell : layer) {
+      const int untouched = depth[static_cast<std::size_t>(cell)] > 0 ? kDeepest : -kDeepest;
       const Index i = cell / grid.n2;
       const Index j = cell % grid.n2;
-      std::int8_t& here = depth[static_cast<std::size_t>(cell)];
-      const int next = std::min({at(i, j - back), at(i - back, j - 1), at(i - back, j), at(i - back, j + 1)});
-      here = static_cast<std::int8_t>(std::min<int>(here, next + 1));
+      for (Index k = std::max<Index>(0, i - 1); k <= std::min(grid.n1 - 1, i + 1); ++k) {
+        for (Index l = std::max<Index>(0, j - 1); l <= std::min(grid.n2 - 1, j + 1); ++l) {
+          const Index other = k * grid.n2 + l;
+          if (depth[static_cast<std::size_t>(other)] != untouched) continue;
+          set(other, deep);
+          next.push_back(other);
+        }
+      }
     }
+    layer = std::move(next);
   }
   return depth;
 }
@@ -91,7 +116,6 @@ std::vector<SharpenedCell> sharpened(const solver::Solution& solution) {
   };
   const Depths contact = depths(grid, [&](Index cell) { return p[cell] > 0.0; });
   const Depths stick = depths(grid, [&](Index cell) { return solution.stick[cell] > 0.0; });
-  const Depths beyond = depths(grid, [&](Index cell) { return solution.stick[cell] == 0.0; });
   std::vector<SharpenedCell> cells;
   const bool has_root = falls(p, contact);
   const solver::FrictionLaw& law = solution.friction;
@@ -104,7 +128,7 @@ std::vector<SharpenedCell> sharpened(const solver::Solution& solution) {
     const auto k = static_cast<std::size_t>(cell);
     const bool at_edge = has_root && contact[k] > 0 && contact[k] <= kCut;
     // Beside the edge the stick area is as narrow as the slip ring, and neither square is linear.
-    const bool at_front = contact[k] > kCut + 1 && std::max(stick[k], beyond[k]) <= kCut && !law.factors;
+    const bool at_front = contact[k] > kCut + 1 && std::abs(stick[k]) <= kCut && !law.factors;
     if (!(at_edge || at_front)) continue;
     std::optional<double> root;
     if (at_edge)

@@ -15,10 +15,11 @@ class MotionField {
   MotionField(const Grid& grid, double along1, double along2 = 0.0, double turn = 0.0)
       : grid_(grid),
         cells_(grid.cells()),
-        along1_(along1),
-        along2_(along2),
-        turn_(turn),
+        motion_(along1, along2, turn),
         x2_(Eigen::ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); })) {}
+
+  /// (along1, along2, turn)
+  const Eigen::Vector3d& motion() const { return motion_; }
 
   /// The same motion over packed cells of its grid.
   MotionField packed(const Packing& packing) const {
@@ -34,16 +35,21 @@ class MotionField {
     double slope;
     const double* x;
   };
-  Row row(Index first) const {
+  Row row(Index first) const { return row(first, motion()); }
+  /// Likewise of another motion (along1, along2, turn) over the same cells.
+  Row row(Index first, const Eigen::Vector3d& motion) const {
+    const double along1 = motion[0];
+    const double along2 = motion[1];
+    const double turn = motion[2];
     const bool second = first >= cells_;
     const Index cell = second ? first - cells_ : first;
     if (coordinates_ != nullptr) {
       const double* const x1 = coordinates_->data() + cell;
-      return second ? Row{along2_, turn_, x1} : Row{along1_, -turn_, x1 + cells_};
+      return second ? Row{along2, turn, x1} : Row{along1, -turn, x1 + cells_};
     }
     const Index i = cell / grid_.n2;
     const double* const x2 = x2_.data() + (cell - i * grid_.n2);
-    return second ? Row{along2_ + turn_ * grid_.x1(i), 0.0, x2} : Row{along1_, -turn_, x2};
+    return second ? Row{along2 + turn * grid_.x1(i), 0.0, x2} : Row{along1, -turn, x2};
   }
 
   /// The values [first, first + n), an expression of Eigen's.
@@ -77,7 +83,7 @@ class MotionField {
 
   Grid grid_;
   Index cells_;  ///< of a component
-  double along1_, along2_, turn_;
+  Eigen::Vector3d motion_;
   Eigen::ArrayXd x2_;
   std::shared_ptr<const Eigen::ArrayXd> coordinates_ = {};  ///< of packed cells
 };

@@ -113,43 +113,68 @@ void FrictionDiscs::project(ArrayXd& q) const {
   });
 }
 
-/// The sums of LoadsAlong, two cells at a time.
-template <int M>
-struct LoadsOfPairs {
-  std::array<Pair, M> load{};
-  std::array<std::array<Pair, M>, M> slope{};
+/// Both components of a vector in two cells.
+using PairOfVectors = std::array<Pair, 2>;
+
+/// The sums of LoadsAlong on the unit motions (1, 0), (0, 1) and (-x2, x1), two cells at a time, and their
+/// derivatives along so many directions: 0 stands for the unit motions themselves, along which these are
+/// symmetric.
+template <std::size_t Directions>
+struct UnitLoadsOfPairs {
+  std::array<Pair, 3> load{};
+  std::array<std::array<Pair, 3>, Directions == 0 ? 3 : Directions> slope{};
   Pair potential{}, carried{}, square{};
 
-  /// z: y + sum of x_l w_l; w, c: the directions and the conditions' fields there; all by component.
-  void add(Pair bound, const std::array<Pair, 2>& z, const std::array<std::array<Pair, 2>, M>& w,
-           const std::array<std::array<Pair, 2>, M>& c) {
+  /// free: 1, or 0 in a cell that is none; z: y + sum of x_l w_l; turn: (-x2, x1).
+  void add(Pair free, Pair bound, const PairOfVectors& z, const PairOfVectors& turn,
+           const std::array<PairOfVectors, Directions>& w) {
     // P(z) = factor z, and its derivative takes out what is along z where that is cut to the bound.
     const Pair z_z = z[0] * z[0] + z[1] * z[1];
     const Pair bound_2 = bound * bound;
     const auto cut = z_z > bound_2;
     const Pair length_2 = cut ? z_z : both(1.0);
     const Pair length{std::sqrt(length_2[0]), std::sqrt(length_2[1])};
-    const Pair factor = cut ? bound / length : both(1.0);
+    const Pair factor = cut ? bound / length : free;
     const Pair along = cut ? factor / length_2 : both(0.0);
-    for (std::size_t k = 0; k < M; ++k) {
-      const Pair c_z = c[k][0] * z[0] + c[k][1] * z[1];
-      load[k] += factor * c_z;
-      const Pair out = along * c_z;
-      const Pair derivative1 = factor * c[k][0] - out * z[0];
-      const Pair derivative2 = factor * c[k][1] - out * z[1];
-      for (std::size_t l = 0; l < M; ++l) slope[k][l] += derivative1 * w[l][0] + derivative2 * w[l][1];
+    add_loads({factor * z[0], factor * z[1]}, turn, load);
+    const PairOfVectors out{along * z[0], along * z[1]};
+    const PairOfVectors row1{factor - out[0] * z[0], -out[0] * z[1]};
+    const PairOfVectors row2{row1[1], factor - out[1] * z[1]};
+    const auto derivative = [&](const PairOfVectors& of) {
+      return PairOfVectors{row1[0] * of[0] + row1[1] * of[1], row2[0] * of[0] + row2[1] * of[1]};
+    };
+    if constexpr (Directions == 0) {
+      slope[0][0] += row1[0];
+      slope[0][1] += row1[1];
+      slope[1][1] += row2[1];
+      add_loads(derivative(turn), turn, slope[2]);
     }
+    for (std::size_t l = 0; l < Directions; ++l) add_loads(derivative(w[l]), turn, slope[l]);
     potential += cut ? bound * (length - both(0.5) * bound) : both(0.5) * z_z;
     carried += cut ? bound_2 : z_z;
     square += cut ? z_z : bound_2;
   }
 
-  void add_to(LoadsAlong<M>& sum) const {
-    for (std::size_t k = 0; k < M; ++k) {
+  static void add_loads(const PairOfVectors& q, const PairOfVectors& turn, std::array<Pair, 3>& sums) {
+    sums[0] += q[0];
+    sums[1] += q[1];
+    sums[2] += turn[0] * q[0] + turn[1] * q[1];
+  }
+
+  template <int Columns>
+  void add_to(LoadsAlong<3, Columns>& sum) {
+    if constexpr (Directions == 0) {
+      slope[1][0] = slope[0][1];
+      slope[0][2] = slope[2][0];
+      slope[1][2] = slope[2][1];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<int>(k);
       sum.load[row] += load[k][0] + load[k][1];
-      for (std::size_t l = 0; l < M; ++l)
-        sum.slope(row, static_cast<int>(l)) += slope[k][l][0] + slope[k][l][1];
+      for (int l = 0; l < Columns; ++l) {
+        const Pair part = slope[static_cast<std::size_t>(l)][k];
+        sum.slope(row, l) += part[0] + part[1];
+      }
     }
     sum.potential += potential[0] + potential[1];
     sum.carried += carried[0] + carried[1];
@@ -161,35 +186,55 @@ template <int M, typename Direction>
 LoadsAlong<M> FrictionDiscs::loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
                                          const Eigen::Vector<double, M>& x,
                                          const std::array<const MotionField*, M>& c) const {
+  constexpr bool kAlongMotions = std::is_same_v<Direction, MotionField>;
+  constexpr std::size_t kFields = kAlongMotions ? 0 : M;
   const Index n = cells();
-  return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& sum) {
-    LoadsOfPairs<M> part;
-    using RowOfDirection = decltype(row_of(*w[0], first));
-    std::array<std::array<RowOfDirection, 2>, M> rows;
-    std::array<std::array<MotionRow, 2>, M> rows_of_fields;
-    for (std::size_t k = 0; k < M; ++k) {
-      rows[k] = {row_of(*w[k], first), row_of(*w[k], first + n)};
-      rows_of_fields[k] = {row_of(*c[k], first), row_of(*c[k], first + n)};
+  Eigen::Matrix<double, 3, M> of_fields;
+  Eigen::Matrix<double, 3, M> of_directions = Eigen::Matrix<double, 3, M>::Zero();
+  for (int k = 0; k < M; ++k) {
+    of_fields.col(k) = c[static_cast<std::size_t>(k)]->motion();
+    if constexpr (kAlongMotions) of_directions.col(k) = w[static_cast<std::size_t>(k)]->motion();
+  }
+  const Eigen::Vector3d motion = of_directions * x;
+  const auto sums = sweep_.sum<LoadsAlong<3, kAlongMotions ? 3 : M>>([&](Index first, Index last, auto& sum) {
+    UnitLoadsOfPairs<kFields> part;
+    std::array<MotionRow, 2> turns;
+    std::array<MotionRow, 2> motions;
+    std::array<std::array<const float*, 2>, kFields> rows;
+    for (const std::size_t component : {0, 1}) {
+      const Index start = first + static_cast<Index>(component) * n;
+      turns[component] = {c[0]->row(start, Eigen::Vector3d::UnitZ())};
+      motions[component] = {c[0]->row(start, motion)};
+      if constexpr (!kAlongMotions) {
+        for (std::size_t l = 0; l < M; ++l) rows[l][component] = w[l]->data() + start;
+      }
     }
-    std::array<std::array<Pair, 2>, M> directions;
-    std::array<std::array<Pair, 2>, M> fields;
+    std::array<PairOfVectors, kFields> directions;
     const auto add = [&](Index i, bool both_cells) {
-      std::array<Pair, 2> z{pair(y.data() + i, both_cells), pair(y.data() + i + n, both_cells)};
-      for (std::size_t k = 0; k < M; ++k) {
-        const Pair x_k = both(x[static_cast<int>(k)]);
-        for (const std::size_t component : {0, 1}) {
-          directions[k][component] = rows[k][component](i - first, both_cells);
-          fields[k][component] = rows_of_fields[k][component](i - first, both_cells);
-          z[component] += x_k * directions[k][component];
+      PairOfVectors z{pair(y.data() + i, both_cells), pair(y.data() + i + n, both_cells)};
+      PairOfVectors turn;
+      const Index k = i - first;
+      for (const std::size_t component : {0, 1}) {
+        turn[component] = turns[component](k, both_cells);
+        if constexpr (kAlongMotions) z[component] += motions[component](k, both_cells);
+        for (std::size_t l = 0; l < kFields; ++l) {
+          directions[l][component] = pair(rows[l][component] + k, both_cells);
+          z[component] += both(x[static_cast<int>(l)]) * directions[l][component];
         }
       }
-      part.add(pair(bound_.data() + i, both_cells), z, directions, fields);
+      part.add(Pair{1.0, both_cells ? 1.0 : 0.0}, pair(bound_.data() + i, both_cells), z, turn, directions);
     };
     Index i = first;
     for (; i + 1 < last; i += 2) add(i, true);
     if (i < last) add(i, false);
     part.add_to(sum);
   });
+  LoadsAlong<M> loads{of_fields.transpose() * sums.load, {}, sums.potential, sums.carried, sums.square};
+  if constexpr (kAlongMotions)
+    loads.slope = of_fields.transpose() * sums.slope * of_directions;
+  else
+    loads.slope = of_fields.transpose() * sums.slope;
+  return loads;
 }
 
 double FrictionDiscs::gap(const ArrayXd& q, const ArrayXd& slip) const {

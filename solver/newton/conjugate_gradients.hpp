@@ -82,18 +82,32 @@ inline double dot(Index cells, Index first, Index last, const Eigen::ArrayXd& a,
   return sum;
 }
 
-/// The sum of n products of values in single and in double precision.
-inline double dot(const float* w, const double* r, Index n) {
-  Packet::Vector sum{};
-  double last = 0.0;
+/// Sums of n products with values of fields in single precision, a pass for all of them: sums[k] += w_k.r.
+template <std::size_t K>
+void add_dots(const std::array<const float*, K>& w, const double* r, Index n, double* sums) {
+  std::array<Packet::Vector, K> pairs{};
+  std::array<double, K> last{};
   Packet::each(0, n, [&]<typename Value>(Index i, Value) {
-    const Value product = Packet::get<Value>(w + i) * Packet::get<Value>(r + i);
-    if constexpr (std::is_same_v<Value, double>)
-      last = product;
-    else
-      sum += product;
+    const auto value = Packet::get<Value>(r + i);
+    for (std::size_t k = 0; k < K; ++k) {
+      const Value product = Packet::get<Value>(w[k] + i) * value;
+      if constexpr (std::is_same_v<Value, double>)
+        last[k] = product;
+      else
+        pairs[k] += product;
+    }
   });
-  return sum[0] + sum[1] + last;
+  for (std::size_t k = 0; k < K; ++k) sums[k] += pairs[k][0] + pairs[k][1] + last[k];
+}
+
+/// y -= the sum of part_k w_k, in n values.
+template <std::size_t K>
+void take_out(const std::array<const float*, K>& w, const double* parts, double* y, Index n) {
+  Packet::each(0, n, [&]<typename Value>(Index i, Value) {
+    auto value = Packet::get<Value>(y + i);
+    for (std::size_t k = 0; k < K; ++k) value -= parts[k] * Packet::get<Value>(w[k] + i);
+    Packet::put(y + i, value);
+  });
 }
 
 /// Fields that an iteration overwrites; not owned.
@@ -206,11 +220,9 @@ class CgConstraints {
   /// sum += w_k.r in some cells
   void add_products_of_tangents(const Sweep& cells, Index first, Index last, const Eigen::ArrayXd& r,
                                 CgProducts& sum) const {
-    for (std::size_t k = 0; k < count_; ++k) {
-      for_components(cells, r, first, last, [&](Index start, Index n) {
-        sum.tangents[k] += dot(tangents_[k].data() + start, r.data() + start, n);
-      });
-    }
+    for_components(cells, r, first, last, [&](Index start, Index n) {
+      with_tangents(start, [&](const auto& w) { add_dots(w, r.data() + start, n, sum.tangents.data()); });
+    });
   }
 
   /// As many as there are conditions.
@@ -238,15 +250,9 @@ class CgConstraints {
   /// y -= the sum of part_k w_k in some cells
   void take_tangents_out(const Sweep& cells, Index first, Index last, const Coefficients& parts,
                          Eigen::ArrayXd& y) const {
-    for (Index k = 0; k < count(); ++k) {
-      const auto part = parts[k];
-      for_components(cells, y, first, last, [&](Index start, Index n) {
-        Packet::each(start, start + n, [&]<typename Value>(Index i, Value) {
-          const Value taken = part * Packet::get<Value>(tangents_[at(k)].data() + i);
-          Packet::put(y.data() + i, Packet::get<Value>(y.data() + i) - taken);
-        });
-      });
-    }
+    for_components(cells, y, first, last, [&](Index start, Index n) {
+      with_tangents(start, [&](const auto& w) { take_out(w, parts.data(), y.data() + start, n); });
+    });
   }
 
   /// x += the combination of tangents with these values of c_k.x.
@@ -270,6 +276,17 @@ class CgConstraints {
 
   static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
   Index count() const { return static_cast<Index>(count_); }
+  /// work(where each tangent has its values from the first one on), compiled for each number of them.
+  template <std::size_t K = kMaxConditions, typename Work>
+  void with_tangents(Index first, const Work& work) const {
+    if (count_ < K) {
+      if constexpr (K > 1) with_tangents<K - 1>(first, work);
+      return;
+    }
+    std::array<const float*, K> w;
+    for (std::size_t k = 0; k < K; ++k) w[k] = tangents_[k].data() + first;
+    work(w);
+  }
   template <typename Field, typename Work>
   static void for_components(const Sweep& cells, const Field& field, Index first, Index last,
                              const Work& work) {
@@ -355,12 +372,17 @@ class ProjectedCg {
       constraints_.add_products_of_tangents(cells_, first, last, r_, sum);
     });
     summary.multipliers = constraints_.multipliers(constraints_.first(products.tangents));
-    clear(cells_, y_);
+    clear_elsewhere(y_);
     cells_.each([&](Index first, Index last) { load(first, last, summary.multipliers); });
     const double square = precondition();
     clear(cells_, d_);
     turn(0);
     return square;
+  }
+
+  /// Where there are cells in which the iteration does not move.
+  void clear_elsewhere(Eigen::ArrayXd& y) const {
+    if (cells_.count() < cells_.size()) clear(cells_, y);
   }
 
   /// Takes conditions out of the residual and begins to precondition it.
@@ -378,11 +400,9 @@ class ProjectedCg {
       preconditioner_.store(first, last, r_, y_, y_);
       sum.fields += dot(cells_.size(), first, last, r_, y_);
       constraints_.add_products(cells_, first, last, y_, sum);
-      constraints_.add_products_of_tangents(cells_, first, last, r_, sum);
     });
     parts_ = constraints_.parts(constraints_.first(products.conditions));
-    left_ = constraints_.first(products.tangents);
-    return products.fields - (parts_.size() > 0 ? parts_.dot(left_) : 0.0);
+    return products.fields;
   }
 
   /// The next direction, with this part of the last one.
@@ -414,9 +434,9 @@ class ProjectedCg {
     }
     const double step = square / curvature;
     const Coefficients multipliers =
-        constraints_.multipliers(left_ - step * constraints_.first(products.tangents));
+        constraints_.multipliers(-step * constraints_.first(products.tangents));
     summary.multipliers += multipliers;
-    clear(cells_, y_);
+    clear_elsewhere(y_);
     cells_.each([&](Index first, Index last) {
       for (Index start = first; start < x_.size(); start += cells_.size()) {
         x_.segment(start, last - first) += step * d_.segment(start, last - first);
@@ -433,7 +453,6 @@ class ProjectedCg {
   const Sweep& cells_;
   Eigen::ArrayXd &r_, &x_, &d_, &Ad_, &y_;
   Coefficients parts_;  ///< of the tangents in y
-  Coefficients left_;   ///< products of the tangents with the residual: rounding, which must not grow
 };
 
 /// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x

@@ -10,10 +10,10 @@
 namespace slipstick::solver {
 
 /// c_k.P(y + sum of x_l w_l), its derivatives by x_l, and the potential whose gradient it is where w = c.
-template <int M>
+template <int M, int Directions = M>
 struct LoadsAlong {
   Eigen::Vector<double, M> load = Eigen::Vector<double, M>::Zero();
-  Eigen::Matrix<double, M, M> slope = Eigen::Matrix<double, M, M>::Zero();
+  Eigen::Matrix<double, M, Directions> slope = Eigen::Matrix<double, M, Directions>::Zero();
   double potential = 0.0;
   /// Sum of |P(y + sum of x_l w_l)|^2, where cells may carry a load against each other; else 0.
   double carried = 0.0;
