@@ -126,12 +126,11 @@ class FrontCells {
   bool sticks(Index i, Index j) const { return in_contact(i, j) && stick_[i * grid_.n2 + j] != 0.0; }
   double slip_square(Index i, Index j) const { return slip_square(i * grid_.n2 + j); }
 
+  /// All cells of the grid, and those next to it.
   template <typename Visit>
-  void for_contact_cells(const Visit &visit) const {
-    for (Index i = 0; i < grid_.n1; ++i) {
-      for (Index j = 0; j < grid_.n2; ++j) {
-        if (in_contact(i, j)) visit(i, j);
-      }
+  void for_all(const Visit &visit) const {
+    for (Index i = -1; i <= grid_.n1; ++i) {
+      for (Index j = -1; j <= grid_.n2; ++j) visit(i, j);
     }
   }
 
@@ -177,17 +176,27 @@ class FrontCells {
 class Rays {
  public:
   Rays(const FrontCells &cells, double stick_cells) : cells_(cells), mirrored_(cells.is_mirrored()) {
-    cells.for_contact_cells([&](Index i, Index j) {
+    Index sum_i = 0;
+    Index sum_j = 0;
+    cells.for_all([&](Index i, Index j) {
       if (!cells.sticks(i, j)) return;
-      centre_i_ += static_cast<double>(i) / stick_cells;
-      centre_j_ += static_cast<double>(j) / stick_cells;
+      sum_i += i;
+      sum_j += j;
     });
+    centre_i_ = static_cast<double>(sum_i) / stick_cells;
+    centre_j_ = static_cast<double>(sum_j) / stick_cells;
     double longest = 1.0;
-    cells.for_contact_cells([&](Index i, Index j) {
-      if (cells.sticks(i, j)) longest = std::max(longest, radius_of(i, j));
+    double shortest = std::numeric_limits<double>::infinity();
+    cells.for_all([&](Index i, Index j) {
+      if (cells.sticks(i, j))
+        longest = std::max(longest, square_of_radius(i, j));
+      else
+        shortest = std::min(shortest, square_of_radius(i, j));
     });
-    count_ =
-        4 * static_cast<Index>(std::ceil(0.25 * kTurn * longest));  // no answer changes by a quarter turn
+    // No answer changes by a quarter turn.
+    count_ = 4 * static_cast<Index>(std::ceil(0.25 * kTurn * std::sqrt(longest)));
+    // Up to there rays cross sticking cells alone: no point of a cell is further than 1 from its centre.
+    start_ = std::max(0.0, std::floor(std::sqrt(shortest)) - 1.0);
     counted_.resize(count_);
     edge_.resize(count_);
     in_parts(ThreadPool::available(), distinct(), [&](int, Index first, Index last) {
@@ -226,11 +235,7 @@ class Rays {
   }
 
   /// From the centroid: the distance, and the angle from 0 to a turn.
-  double radius_of(Index i, Index j) const {
-    const double x = static_cast<double>(i) - centre_i_;
-    const double y = static_cast<double>(j) - centre_j_;
-    return std::sqrt(x * x + y * y);
-  }
+  double radius_of(Index i, Index j) const { return std::sqrt(square_of_radius(i, j)); }
   double angle_of(Index i, Index j) const {
     const double theta = std::atan2(static_cast<double>(j) - centre_j_, static_cast<double>(i) - centre_i_);
     return theta < 0.0 ? theta + kTurn : theta;
@@ -247,6 +252,11 @@ class Rays {
   }
 
  private:
+  double square_of_radius(Index i, Index j) const {
+    const double x = static_cast<double>(i) - centre_i_;
+    const double y = static_cast<double>(j) - centre_j_;
+    return x * x + y * y;
+  }
   void cast(Index ray) {
     const double c = std::cos(angle(ray));
     const double s = std::sin(angle(ray));
@@ -254,7 +264,7 @@ class Rays {
       while (inside(nearest(centre_i_ + r * c), nearest(centre_j_ + r * s))) r += kMarch;
       return r;
     };
-    const double front = march(0.0, [&](Index i, Index j) { return cells_.sticks(i, j); });
+    const double front = march(start_, [&](Index i, Index j) { return cells_.sticks(i, j); });
     const double edge = march(front, [&](Index i, Index j) { return cells_.in_contact(i, j); });
     for (const Index image : images(ray)) {
       edge_[image] = edge;
@@ -267,6 +277,7 @@ class Rays {
   const FrontCells &cells_;
   bool mirrored_;
   double centre_i_ = 0.0, centre_j_ = 0.0;  ///< centroid of the stick area
+  double start_ = 0.0;  ///< of the march along each ray
   Index count_ = 0;
   ArrayXd counted_, edge_;
 };
@@ -327,7 +338,8 @@ class FrontFit {
   void collect_slipping_cells(const FrontCells &cells) {
     const double nearest_front = rays_.counted().minCoeff();
     const double farthest_front = rays_.counted().maxCoeff();
-    cells.for_contact_cells([&](Index i, Index j) {
+    cells.for_all([&](Index i, Index j) {
+      if (!cells.in_contact(i, j)) return;
       const double r = rays_.radius_of(i, j);
       const bool stuck = cells.sticks(i, j);
       if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
