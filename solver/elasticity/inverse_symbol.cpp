@@ -92,17 +92,27 @@ class PeriodicInverseSymbol final : public InverseSymbol {
             .ranks = grid.ranks};
   }
 
-  /// Row i of a field forward.
-  void load(int thread, Index f, Index i, const double* fields) {
-    double* const row = transform_.own_row(thread);
-    std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
-    std::fill(row + grid_.n2, row + periodic_.n2, 0.0);
-    transform_.forward_sample(thread, f, i);
+  /// Where row i of a field is transformed: where it is, if it needs no zeros.
+  double* row(int thread, double* values) {
+    const bool fits = grid_.n2 == periodic_.n2 && PlaneTransform::is_aligned(values);
+    return fits ? values : transform_.own_row(thread);
+  }
+
+  void load(int thread, Index f, Index i, double* fields) {
+    double* const values = fields + (f * grid_.n1 + i) * grid_.n2;
+    double* const row = this->row(thread, values);
+    if (row != values) {
+      std::copy_n(values, grid_.n2, row);
+      std::fill(row + grid_.n2, row + periodic_.n2, 0.0);
+    }
+    transform_.forward_sample(row, f, i);
   }
 
   void store(int thread, Index f, Index i, double* fields) {
-    transform_.backward_sample(thread, f, i);
-    std::copy_n(transform_.own_row(thread), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
+    double* const values = fields + (f * grid_.n1 + i) * grid_.n2;
+    double* const row = this->row(thread, values);
+    transform_.backward_sample(row, f, i);
+    if (row != values) std::copy_n(row, grid_.n2, values);
   }
 
   template <typename Count>

@@ -201,12 +201,12 @@ void MirroredInverseSymbol::apply(std::span<double> field) {
 void MirroredInverseSymbol::load(int thread, Index f, Index i, const double* values) {
   const auto [even, odd] = signs(f, i);
   reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.own_row(thread));
-  transform_.forward_sample(thread, f, i);
+  transform_.forward_sample(transform_.own_row(thread), f, i);
 }
 
 void MirroredInverseSymbol::store(int thread, Index f, Index i, double* values) {
   const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
-  transform_.backward_sample(thread, f, i);
+  transform_.backward_sample(transform_.own_row(thread), f, i);
   restore(transform_.own_row(thread), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -81,16 +82,18 @@ class PlaneTransform {
 
   /// A thread's n2 values, before or after their transform.
   double* own_row(int thread) { return own_rows_[count(thread)].data(); }
+  /// Whether values may be transformed where they are, though FFTW overwrites them.
+  static bool is_aligned(double* values) { return fftw_alignment_of(values) == 0; }
   /// Row of sample i: n2/2 + 1 complex numbers, each its real, then its imaginary part.
   double* sample(Index field, Index i) {
     return row(field, shape_.whole ? shape_.place(i, shape_.n1) : i - own_samples_.first);
   }
-  void forward_sample(int thread, Index field, Index i) {
-    fftw_execute_dft_r2c(row_forward_.get(), own_row(thread), numbers(sample(field, i)));
+  void forward_sample(double* values, Index field, Index i) {
+    fftw_execute_dft_r2c(row_forward_.get(), values, numbers(sample(field, i)));
   }
   /// Overwrites it.
-  void backward_sample(int thread, Index field, Index i) {
-    fftw_execute_dft_c2r(row_backward_.get(), numbers(sample(field, i)), own_row(thread));
+  void backward_sample(double* values, Index field, Index i) {
+    fftw_execute_dft_c2r(row_backward_.get(), numbers(sample(field, i)), values);
   }
   /// Zeroes the rows of a whole plane that hold no samples. Transforms write in them.
   void clear_others(Index field) {
@@ -173,7 +176,7 @@ class PlaneTransform {
   void read_batch(Index field, Index batch, double* columns) {
     shared_.each_row(row(field, 0), batch, [&](Index i, const double* from) {
       __builtin_prefetch(from + kAhead * row_stride_);
-      std::copy_n(from, kLine, columns + shape_.place(i, shape_.n1) * kLine);
+      std::memcpy(columns + shape_.place(i, shape_.n1) * kLine, from, kLine * sizeof(double));
     });
     for (Index i = shape_.samples; i < shape_.n1; ++i) {
       std::fill_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, 0.0);
@@ -182,7 +185,7 @@ class PlaneTransform {
   void write_batch(const double* columns, Index field, Index batch) {
     shared_.each_row(row(field, 0), batch, [&](Index i, double* to) {
       __builtin_prefetch(to + kAhead * row_stride_, 1);
-      std::copy_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, to);
+      std::memcpy(to, columns + shape_.place(i, shape_.n1) * kLine, kLine * sizeof(double));
     });
   }
 

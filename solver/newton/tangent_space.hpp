@@ -92,17 +92,23 @@ struct TangentSpace {
       return;
     }
     Packet::each(first, last, [&]<typename Value>(Index i, Value) {
-      put(v, i, projected(i, get<Value>(v, i), get<Value>(v, i + n)));
+      if (any_on_line<Value>(i)) put(v, i, projected(i, get<Value>(v, i), get<Value>(v, i + n)));
     });
   }
   /// (v1, v2) likewise, in one cell of vectors or in two.
   template <typename Value>
   std::array<Value, 2> projected(Index i, Value v1, Value v2) const {
+    if (!any_on_line<Value>(i)) return {v1, v2};
     const auto along1 = get<Value>(f1, i);
     const auto along2 = get<Value>(f2, i);
     const Value along = along1 * v1 + along2 * v2;
     const auto on_line = get<Value>(stiffness, i) > 0.0;
     return {on_line ? along * along1 : v1, on_line ? along * along2 : v2};
+  }
+  /// Whether one of these cells moves along a line: whole stretches stick.
+  template <typename Value>
+  bool any_on_line(Index i) const {
+    return on_line(i) || (sizeof(Value) > sizeof(double) && on_line(i + 1));
   }
   /// Values of a field from i on, as many as the type has.
   template <typename Value, typename Values>
