@@ -14,9 +14,10 @@ namespace {
 constexpr double kRho = 0.2;
 constexpr double kRhoOfSpots = 0.05;
 constexpr double kRhoOfPressure = 0.1;
-/// Iterations of the linear problem that refines the multipliers at the end; each brings them nearer by a
-/// factor of about 5.
+/// Iterations of the linear problem that refines the multipliers at the end, at most; each brings them nearer
+/// by about this factor.
 constexpr int kRefiningIterations = 2;
+constexpr double kRefined = 5.0;
 /// Safety factor: the error of multipliers falls about as the gap does.
 constexpr double kMultiplierSafety = 10.0;
 /// Steps without a lower gap that end the run; fewer where the gap is good enough already.
@@ -75,8 +76,7 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
       wanted = std::max(wanted, options.part_of_first_gap * summary.gap);
     if (summary.gap <= wanted && summary.iterations >= options.least_iterations &&
         (!options.refine_multipliers ||
-         multipliers_are_accurate(last, summary.gap / last_gap, options.tolerance) ||
-         refine(q, options.tolerance, summary))) {
+         refine(q, options.tolerance, multiplier_error(last, summary.gap / last_gap), summary))) {
       summary.converged = true;
       return summary;
     }
@@ -190,29 +190,33 @@ bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
   return false;
 }
 
-/// Whether multipliers are as good as the tolerance: what the last step has changed them by was the error
-/// before, of which a part is left as of the gap. Those of no load are as good as the others, unless they are
-/// what is left of the states before.
+/// The largest relative error of the multipliers: what the last step has changed them by was the error before,
+/// of which a part is left as of the gap. Those of no load are as good as the others, unless they are what is
+/// left of the states before.
 template <AdmissibleSet Set>
-bool NaturalMapNewton<Set>::multipliers_are_accurate(const Coefficients& last, double part_of_gap,
-                                                     double tolerance) const {
+double NaturalMapNewton<Set>::multiplier_error(const Coefficients& last, double part_of_gap) const {
   const Coefficients& now = state_.multipliers();
+  double largest = 0.0;
   for (Index k = 0; k < now.size(); ++k) {
     const bool loaded = state_.program().imposed[static_cast<std::size_t>(k)].load != 0.0;
     if (!loaded && state_.program().energy_before == 0.0) continue;
-    if (!(kMultiplierSafety * part_of_gap * std::abs(now[k] - last[k]) <= tolerance * std::abs(now[k])))
-      return false;
+    const double error = kMultiplierSafety * part_of_gap * std::abs(now[k] - last[k]);
+    const double part = error == 0.0 ? 0.0 : error / std::abs(now[k]);
+    largest = part <= largest ? largest : part;  // keeps NaN
   }
-  return true;
+  return largest;
 }
 
-/// The multipliers to second order: those of a Newton step that keeps the loads. False if the gap at those
-/// multipliers is above the tolerance: then another step is due.
+/// The multipliers, of this relative error, to the tolerance: where it is above, to second order, those of a
+/// Newton step that keeps the loads. False if the gap at those multipliers is above the tolerance: then another
+/// step is due.
 template <AdmissibleSet Set>
-bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
+bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, double error, NewtonSummary& summary) {
+  if (error <= tolerance) return true;
   linear_.linearise(state_, trial_);
   if (!linear_.has_tangents() || state_.balance().count() == 0) return true;
-  const CgSummary step = linear_.solve(state_, q, {0.0, kRefiningIterations}, {}, trial_);
+  const int iterations = error <= kRefined * tolerance ? 1 : kRefiningIterations;
+  const CgSummary step = linear_.solve(state_, q, {0.0, iterations}, {}, trial_);
   if (step.broke_down()) return true;
   const Coefficients first_order = state_.multipliers();
   state_.set_multipliers(first_order - step.multipliers);
@@ -232,7 +236,7 @@ bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, NewtonSum
 template <AdmissibleSet Set>
 NewtonSummary NaturalMapNewton<Set>::stop(const ArrayXd& q, const NewtonOptions& options,
                                           NewtonSummary& summary, const std::string& why) {
-  if (options.refine_multipliers) refine(q, summary.gap, summary);
+  if (options.refine_multipliers) refine(q, summary.gap, std::numeric_limits<double>::infinity(), summary);
   summary.gap = state_.relative_gap(q, trial_.u);
   summary.converged = state_.is_certified(options.tolerance, trial_.u);
   return summary.converged ? summary : fail(summary, why);

@@ -75,8 +75,8 @@ class NaturalMapNewton {
   void write_trial(const ArrayXd& q, double length);
   Coefficients jump_loads(const ArrayXd& q);
   bool restore_along_conditions();
-  bool multipliers_are_accurate(const Coefficients& last, double part_of_gap, double tolerance) const;
-  bool refine(const ArrayXd& q, double tolerance, NewtonSummary& summary);
+  double multiplier_error(const Coefficients& last, double part_of_gap) const;
+  bool refine(const ArrayXd& q, double tolerance, double error, NewtonSummary& summary);
   NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
                      const std::string& why);
 

@@ -181,8 +181,11 @@ TYPED_TEST(Admissible, LoadAlongAMotionIsThatAlongItsField) {
   Random random(8);
   const ArrayXd y = random.field(size_of<TypeParam>());
   const ArrayXf field = kept(size_of<TypeParam>()).template cast<float>();
-  EXPECT_EQ(along(set, y, kMotion, 0.3).load, along(set, y, field, 0.3).load);
-  EXPECT_EQ(along(set, y, kMotion, 0.3).slope, along(set, y, field, 0.3).slope);
+  const LoadsAlong<1> motion = along(set, y, kMotion, 0.3);
+  const LoadsAlong<1> kept_motion = along(set, y, field, 0.3);
+  const double largest = kRounding * kept(size_of<TypeParam>()).square().sum();
+  EXPECT_NEAR(motion.load[0], kept_motion.load[0], largest);
+  EXPECT_NEAR(motion.slope(0, 0), kept_motion.slope(0, 0), largest);
 }
 
 /// Whatever the multiplier, the gap is at least what the energy can fall by under the same load, and
