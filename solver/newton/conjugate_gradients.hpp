@@ -400,9 +400,11 @@ class ProjectedCg {
       preconditioner_.store(first, last, r_, y_, y_);
       sum.fields += dot(cells_.size(), first, last, r_, y_);
       constraints_.add_products(cells_, first, last, y_, sum);
+      constraints_.add_products_of_tangents(cells_, first, last, r_, sum);
     });
     parts_ = constraints_.parts(constraints_.first(products.conditions));
-    return products.fields;
+    left_ = constraints_.first(products.tangents);
+    return products.fields - (parts_.size() > 0 ? parts_.dot(left_) : 0.0);
   }
 
   /// The next direction, with this part of the last one.
@@ -434,7 +436,7 @@ class ProjectedCg {
     }
     const double step = square / curvature;
     const Coefficients multipliers =
-        constraints_.multipliers(-step * constraints_.first(products.tangents));
+        constraints_.multipliers(left_ - step * constraints_.first(products.tangents));
     summary.multipliers += multipliers;
     clear_elsewhere(y_);
     cells_.each([&](Index first, Index last) {
@@ -453,6 +455,7 @@ class ProjectedCg {
   const Sweep& cells_;
   Eigen::ArrayXd &r_, &x_, &d_, &Ad_, &y_;
   Coefficients parts_;  ///< of the tangents in y
+  Coefficients left_;   ///< products of the tangents with the residual: rounding, which must not grow
 };
 
 /// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x
