@@ -277,7 +277,7 @@ class Rays {
   const FrontCells &cells_;
   bool mirrored_;
   double centre_i_ = 0.0, centre_j_ = 0.0;  ///< centroid of the stick area
-  double start_ = 0.0;  ///< of the march along each ray
+  double start_ = 0.0;                      ///< of the march along each ray
   Index count_ = 0;
   ArrayXd counted_, edge_;
 };

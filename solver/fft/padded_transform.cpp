@@ -163,7 +163,8 @@ void PaddedTransform::separate(std::size_t field, Index first_row, const Complex
     __builtin_prefetch(rows_of(field, std::min(to + kAhead, columns() - 1), group), 1);
     for (Index r = 0; r < kRows; r += 2) {
       const auto z = half * Packet::load(reinterpret_cast<const double*>(pairs + r * stride2_ + k));
-      const auto y = half * sign * Packet::load(reinterpret_cast<const double*>(pairs + r * stride2_ + mirrored));
+      const auto y =
+          half * sign * Packet::load(reinterpret_cast<const double*>(pairs + r * stride2_ + mirrored));
       Packet::store(out + 2 * r, z + y);
       Packet::store(out + 2 * r + 2, sign * Packet::exchanged(z - y));
     }

@@ -61,9 +61,9 @@ concept LinearMap = requires(Map& map, Index cell, const Eigen::ArrayXd& x, Eige
 };
 
 /// y = M r likewise, in three parts, so that the first and the last share a sweep over the cells with what
-/// is done before and after: load(first, last, r, z) for all cells of a z that is zero, transform(z), and
-/// store(first, last, r, z, y), where y may be z. project(first, last, y) leaves of y what lies in M's range;
-/// r lies there.
+/// is done before and after: load(first, last, r, z) for all cells of a z that is zero elsewhere,
+/// transform(z), and store(first, last, r, z, y), where y may be z. project(first, last, y) leaves of y what
+/// lies in M's range; r lies there.
 template <class Map>
 concept SplitMap = requires(Map& map, Index cell, const Eigen::ArrayXd& r, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;

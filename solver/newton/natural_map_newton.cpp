@@ -190,9 +190,9 @@ bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
   return false;
 }
 
-/// The largest relative error of the multipliers: what the last step has changed them by was the error before,
-/// of which a part is left as of the gap. Those of no load are as good as the others, unless they are what is
-/// left of the states before.
+/// The largest relative error of the multipliers: what the last step has changed them by was the error
+/// before, of which a part is left as of the gap. Those of no load are as good as the others, unless they are
+/// what is left of the states before.
 template <AdmissibleSet Set>
 double NaturalMapNewton<Set>::multiplier_error(const Coefficients& last, double part_of_gap) const {
   const Coefficients& now = state_.multipliers();
@@ -208,8 +208,8 @@ double NaturalMapNewton<Set>::multiplier_error(const Coefficients& last, double 
 }
 
 /// The multipliers, of this relative error, to the tolerance: where it is above, to second order, those of a
-/// Newton step that keeps the loads. False if the gap at those multipliers is above the tolerance: then another
-/// step is due.
+/// Newton step that keeps the loads. False if the gap at those multipliers is above the tolerance: then
+/// another step is due.
 template <AdmissibleSet Set>
 bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, double error, NewtonSummary& summary) {
   if (error <= tolerance) return true;

@@ -296,9 +296,9 @@ struct DenseMap {
   void transform(const ArrayXd& x, ArrayXd& y) const { y = (matrix * x.matrix()).array(); }
   void store(Index, Index, const ArrayXd&, ArrayXd&) const {}
   void load(Index first, Index last, const ArrayXd& r, ArrayXd& z) const {
-    z += (matrix.middleCols(first, last - first) * r.segment(first, last - first).matrix()).array();
+    z.segment(first, last - first) = r.segment(first, last - first);
   }
-  void transform(ArrayXd&) const {}
+  void transform(ArrayXd& z) const { z = (matrix * z.matrix()).array(); }
   void store(Index first, Index last, const ArrayXd&, const ArrayXd& z, ArrayXd& y) const {
     y.segment(first, last - first) = z.segment(first, last - first);
   }
