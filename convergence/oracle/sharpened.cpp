@@ -33,7 +33,7 @@ Depths depths(const Grid& grid, const Inside& inside) {
     const std::int8_t* const row = depth.data() + i * grid.n2;
     const std::int8_t* const above = i > 0 ? row - grid.n2 : none.data();
     const std::int8_t* const below = i + 1 < grid.n1 ? row + grid.n2 : none.data();
-    // Of three cells above each other, and of nine about a cell, those that are inside.
+    // How many of three cells above each other are inside; of nine about each cell below.
     const auto of_three = [&](Index j) { return (above[j] > 0) + (row[j] > 0) + (below[j] > 0); };
     int before = 0;
     int here = of_three(0);

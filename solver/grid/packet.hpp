@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstring>
+#include <type_traits>
 
 #include "solver/grid/grid.hpp"
 
@@ -68,5 +70,33 @@ struct Packet {
     return __builtin_shufflevector(halves.even, halves.odd, 1, 3);
   }
 };
+
+/// Sums of n products with values of fields in single precision, a pass for all of them: sums[k] += w_k.r.
+template <std::size_t K>
+void add_dots(const std::array<const float*, K>& w, const double* r, Index n, double* sums) {
+  std::array<Packet::Vector, K> pairs{};
+  std::array<double, K> last{};
+  Packet::each(0, n, [&]<typename Value>(Index i, Value) {
+    const auto value = Packet::get<Value>(r + i);
+    for (std::size_t k = 0; k < K; ++k) {
+      const Value product = Packet::get<Value>(w[k] + i) * value;
+      if constexpr (std::is_same_v<Value, double>)
+        last[k] = product;
+      else
+        pairs[k] += product;
+    }
+  });
+  for (std::size_t k = 0; k < K; ++k) sums[k] += pairs[k][0] + pairs[k][1] + last[k];
+}
+
+/// y -= the sum of part_k w_k, in n values.
+template <std::size_t K>
+void take_out(const std::array<const float*, K>& w, const double* parts, double* y, Index n) {
+  Packet::each(0, n, [&]<typename Value>(Index i, Value) {
+    auto value = Packet::get<Value>(y + i);
+    for (std::size_t k = 0; k < K; ++k) value -= parts[k] * Packet::get<Value>(w[k] + i);
+    Packet::put(y + i, value);
+  });
+}
 
 }  // namespace slipstick::solver

@@ -131,7 +131,9 @@ bool NewtonState<Set>::accept(ArrayXd& q, Trial& trial, Safeguards& safeguards) 
   set_.project(trial.q);
   op_.apply_own(trial.q, trial.u, packing_);
   double after = energy_of(trial.q, trial.u);
-  const double highest = energy_ + kEnergyRounding * std::abs(energy_);
+  // Energies are known to the rounding of what they are taken from.
+  const double highest =
+      energy_ + kEnergyRounding * std::abs(energy_) + kGapUnits * std::abs(program_.energy_before);
   const bool lower = after <= highest;
   if (const double part = kIsScalar || !lower ? least_energy_at(q, trial) : 1.0;
       part > kMinPart && part < kNearlyAll) {

@@ -54,6 +54,16 @@ TEST_F(Nothing, IsLeftWhereAllStuck) {
   }
 }
 
+/// Next to nothing, the energy that is left is not much above the rounding of the energy before.
+TEST_F(Nothing, IsReachedThroughTheRoundingOfEnergies) {
+  for (const char* part : {"1.255e-4", "1.842e-4", "2.012e-4", "3e-4", "4.319e-4", "5.439e-4"}) {
+    const auto steps = steps_of({"force = [1, 0]", fmt::format("force = [{}, 0]", part)},
+                                {"upper.shape=flat_punch", "upper.radius=0.0005", "contact.friction=0.3",
+                                 "load.moment_ratio=0", "grid.cells=[24, 24]"});
+    EXPECT_LE(steps[1].certificate.gap, 1e-8);
+  }
+}
+
 /// The tractions that stay meet Coulomb's law under the load that stays, over an energy that this load can
 /// hold.
 TEST_F(Nothing, IsLeftOfTheNormalLoad) {
