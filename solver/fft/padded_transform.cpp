@@ -2,8 +2,6 @@
 
 #include <numbers>
 
-#include "solver/grid/packet.hpp"
-
 namespace slipstick::solver {
 namespace {
 
@@ -155,18 +153,16 @@ void PaddedTransform::forward_group(int thread, std::size_t field, Index first_r
 /// The spectra X and Y of two real rows from that of x + i y: 2 X(k) = Z(k) + conj Z(-k), 2 i Y(k) = Z(k) -
 /// conj Z(-k).
 void PaddedTransform::separate(std::size_t field, Index first_row, const Complex* spectra) {
-  const auto half = Packet::alternating(0.5, 0.5);
-  const auto sign = Packet::alternating(1.0, -1.0);
+  constexpr double half = 0.5;
   const Index group = first_row / kRows;
   const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
-    auto* const out = reinterpret_cast<double*>(rows_of(field, to, group));
+    Complex* const out = rows_of(field, to, group);
     __builtin_prefetch(rows_of(field, std::min(to + kAhead, columns() - 1), group), 1);
     for (Index r = 0; r < kRows; r += 2) {
-      const auto z = half * Packet::load(reinterpret_cast<const double*>(pairs + r * stride2_ + k));
-      const auto y =
-          half * sign * Packet::load(reinterpret_cast<const double*>(pairs + r * stride2_ + mirrored));
-      Packet::store(out + 2 * r, z + y);
-      Packet::store(out + 2 * r + 2, sign * Packet::exchanged(z - y));
+      const Complex z = pairs[r * stride2_ + k];
+      const Complex y = pairs[r * stride2_ + mirrored];
+      out[r] = {half * (z.real() + y.real()), half * (z.imag() - y.imag())};
+      out[r + 1] = {half * (z.imag() + y.imag()), half * (y.real() - z.real())};
     }
   };
   const Index evens = m2_ / 2 + 1;
