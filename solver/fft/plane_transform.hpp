@@ -82,16 +82,17 @@ class PlaneTransform {
 
   /// A thread's n2 values, before or after their transform.
   double* own_row(int thread) { return own_rows_[count(thread)].data(); }
-  /// Whether values may be transformed where they are, though FFTW overwrites them.
+  /// Whether values may stand for a thread's own: the plans are for memory that is aligned as that is.
   static bool is_aligned(double* values) { return fftw_alignment_of(values) == 0; }
   /// Row of sample i: n2/2 + 1 complex numbers, each its real, then its imaginary part.
   double* sample(Index field, Index i) {
     return row(field, shape_.whole ? shape_.place(i, shape_.n1) : i - own_samples_.first);
   }
+  /// values: a thread's own, or others that are aligned; may be overwritten.
   void forward_sample(double* values, Index field, Index i) {
     fftw_execute_dft_r2c(row_forward_.get(), values, numbers(sample(field, i)));
   }
-  /// Overwrites it.
+  /// Likewise, to there; overwrites the sample's row.
   void backward_sample(double* values, Index field, Index i) {
     fftw_execute_dft_c2r(row_backward_.get(), numbers(sample(field, i)), values);
   }
