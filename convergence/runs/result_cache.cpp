@@ -102,12 +102,14 @@ std::optional<Json> ResultCache::find(const std::string& name, const std::string
 
 void ResultCache::keep(const std::string& name, const std::string& cache_key, const Json& result,
                        const fs::path& beside) const {
-  std::error_code stays;  // the folder is the cache's own: a link or a pipe in a result's place is damage
-  if (!fs::is_regular_file(fs::symlink_status(file(name), stays))) fs::remove(file(name), stays);
-  if (fs::is_directory(file(name), stays)) {  // with something in it, which may be somebody's
-    fs::rename(file(name), file(name) += fmt::format(".aside-{:08x}", std::random_device{}()), stays);
+  // The folder is the cache's own: anything but a plain file in a result's place is damage. Several processes
+  // may be here: with a slash at its end a name is a folder's, and a result that another has kept stays.
+  std::error_code no_folder;
+  if (!fs::remove(file(name) / "", no_folder)) {  // with something in it, which may be somebody's
+    fs::rename(file(name) / "", file(name) += fmt::format(".aside-{:08x}", std::random_device{}()),
+               no_folder);
   }
-  write_json_file(file(name), entry(program_, cache_key, result, beside));
+  solver::replace_whole_file(file(name), json_text(entry(program_, cache_key, result, beside), 1) + "\n");
 }
 
 Json ResultCache::find_or_compute(const std::string& name, const std::string& cache_key,

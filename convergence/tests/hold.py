@@ -8,6 +8,7 @@ import time
 PATIENCE = 600  # seconds, longer than it takes on any machine
 SOURCE = r"""
 #define _GNU_SOURCE
+#include <errno.h>
 #include <fcntl.h>
 #include <fnmatch.h>
 #include <stdio.h>
@@ -39,6 +40,12 @@ int rename(const char* from, const char* to) {
   const int result = renameat(AT_FDCWD, from, AT_FDCWD, to);
   if (held && after) hold();
   return result;
+}
+
+/* Gives another process time to put a file there. */
+int remove(const char* file) {
+  if (getenv("HOLD_REMOVALS") != NULL) usleep(20000);
+  return unlink(file) == 0 || (errno == EISDIR && rmdir(file) == 0) ? 0 : -1;
 }
 """
 

@@ -99,6 +99,10 @@ class Draft {
   int descriptor_ = -1;
 };
 
+WriteNamed put(std::string_view content) {
+  return [=](std::FILE* stream, const fs::path&) { std::fwrite(content.data(), 1, content.size(), stream); };
+}
+
 }  // namespace
 
 fs::path behind_links(fs::path file) {
@@ -158,7 +162,17 @@ void write_whole_file(const fs::path& file, const std::function<void(std::FILE*)
 }
 
 void write_whole_file(const fs::path& file, std::string_view content) {
-  write_whole_file(file, [&](std::FILE* stream) { std::fwrite(content.data(), 1, content.size(), stream); });
+  write_whole_named_file(file, put(content));
+}
+
+void replace_whole_file(const fs::path& file, std::string_view content) {
+  try {
+    Draft draft(file);
+    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), put(content), true);
+    draft.replace(file);
+  } catch (const std::system_error& error) {
+    refuse(file, error.code().value());
+  }
 }
 
 void make_folder(const fs::path& folder) {

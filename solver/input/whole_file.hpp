@@ -19,6 +19,8 @@ void write_whole_file(const std::filesystem::path& file, const std::function<voi
 using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
 void write_whole_named_file(const std::filesystem::path& file, const WriteNamed& write);
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
+/// The same of a name that is the program's own: what is no plain file there, a link or a pipe, is replaced.
+void replace_whole_file(const std::filesystem::path& file, std::string_view content);
 
 /// Where the links of a name lead. Links of the system, such as /dev/stdout, stay: they lead to no name.
 std::filesystem::path behind_links(std::filesystem::path file);

@@ -147,6 +147,18 @@ class Study(unittest.TestCase):
         hold.release()
         self.assertEqual(study.wait(), 0, self.text("nohup.log"))
 
+    def test_several_at_once_share_a_folder(self):
+        """Each finds what the others have kept, however slow the removal of files is, and all have the same result."""
+        self.write('cells = [12, 16, 20, 24]\nquantities = ["twist_error"]\n')
+        environment = Hold(self.folder, "", 0).environment | {"HOLD_REMOVALS": "yes"}
+        for again in range(4):
+            with self.subTest(again):
+                shutil.rmtree(self.folder / "points", ignore_errors=True)
+                studies = [self.start(f"one-of-four-{k}", 1, environment) for k in range(4)]
+                self.assertEqual([study.wait() for study in studies], [0] * 4, self.text("one-of-four-0.log"))
+                orders = [json.loads(self.text(f"one-of-four-{k}.json"))["series"]["paper"]["order"] for k in range(4)]
+                self.assertEqual(orders, orders[:1] * 4)
+
     def test_bad_input_is_exit_code_2(self):
         self.write('cells = [16, "32"]\n')
         self.run_study("bad", 2)
