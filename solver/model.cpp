@@ -9,6 +9,7 @@
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/elasticity/law/coated_half_spaces.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
+#include "solver/elasticity/law/rescaled_law.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
@@ -202,6 +203,18 @@ bool reducible(const Scene& scene) {
 
 }  // namespace
 
+Dimensionless Dimensionless::on_grid(const Grid& in_m, const std::array<double, 2>& centre) const {
+  Dimensionless there(in_m.h1);
+  there.stress_unit = stress_unit;
+  there.grid = {in_m.n1, in_m.n2, 1.0, to_dimensionless(in_m.h2, in_m.h1), in_m.quadrant, in_m.ranks};
+  there.pair = pair;
+  there.law = std::make_shared<RescaledLaw>(law, there.length_unit / length_unit);
+  there.friction = resampled(friction, grid_in_m(), in_m, centre);
+  there.hertzian = hertzian;
+  there.pressure_coupling = pressure_coupling;
+  return there;
+}
+
 namespace {
 
 /// A field with the symmetries of the friction bound: the pressure, unless a map has others.
@@ -356,12 +369,11 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);
   const Grid grid = make_grid(scene, surfaces, softest_pair(lower, upper).effective_modulus());
 
-  Model model{};
+  Model model(grid.h1);
   const bool full = scene.model == ModelChoice::full;
   model.shear_coupling = scene.coupling == Coupling::full;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
   require_memory(scene, grid, bytes_around(scene, grid));
-  model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;
   model.grid = {grid.n1, grid.n2, 1.0, to_dimensionless(grid.h2, grid.h1), false, ranks};

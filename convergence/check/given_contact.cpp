@@ -18,7 +18,8 @@ using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
 
-solver::Dimensionless on_grid(solver::Dimensionless bodies, const Grid& grid) {
+/// The same bodies on another grid in the same unit of length.
+solver::Dimensionless with_grid(solver::Dimensionless bodies, const Grid& grid) {
   bodies.friction = resampled(bodies.friction, bodies.grid, grid);
   bodies.grid = grid;
   return bodies;
@@ -103,7 +104,7 @@ ArrayXd pressure_displacement(const GivenContact& contact, const Grid& grid, con
 
 GivenContact with_fields(const GivenContact& contact, const Grid& grid, ArrayXd pressure, ArrayXd traction) {
   const ArrayXd none = ArrayXd::Zero(grid.cells());
-  return {on_grid(contact, grid),
+  return {with_grid(contact, grid),
           contact.elasticity.threads,
           contact.centre,
           std::move(pressure),
@@ -113,12 +114,9 @@ GivenContact with_fields(const GivenContact& contact, const Grid& grid, ArrayXd 
 }
 
 GivenContact make_given_contact(const ForeignField& field, const solver::Dimensionless& bodies, int threads) {
-  const double length = field.grid.h1;
-  const double stress = bodies.stress_unit;
-  solver::Dimensionless here = bodies;
-  here.friction = resampled(bodies.friction, bodies.grid_in_m(), field.grid, field.centre);
-  here.grid = {field.grid.n1, field.grid.n2, 1.0, solver::to_dimensionless(field.grid.h2, length)};
-  here.length_unit = length;
+  const solver::Dimensionless here = bodies.on_grid(field.grid, field.centre);
+  const double length = here.length_unit;
+  const double stress = here.stress_unit;
   return {here,
           threads,
           {field.centre[0] / length, field.centre[1] / length},

@@ -92,7 +92,7 @@ Json load_json(const solver::Step& step) {
 
 /// How normal and tangential tractions are to be coupled.
 const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
-  if (posed.mismatch == 0.0) return "none";
+  if (!posed.coupled) return "none";
   return scene.coupling == solver::Coupling::full ? "full" : "pressure";
 }
 

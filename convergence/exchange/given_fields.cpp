@@ -136,6 +136,7 @@ PosedScene pose(Scene scene, bool with_limit) {
                    .shear_modulus = pair.shear_modulus() * model.stress_unit,
                    .poisson_ratio = pair.poisson_compliance / pair.shear_compliance,
                    .mismatch = model.pressure_coupling ? pair.mismatch / model.stress_unit : 0.0,
+                   .coupled = model.pressure_coupling && model.law->couples(),
                    .moment_limit = 0.0};
   const bool given = scene.pressure != solver::PressureModel::solved;
   if (!given && !with_limit) return posed;

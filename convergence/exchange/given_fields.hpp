@@ -31,6 +31,7 @@ struct PosedScene {
   double poisson_ratio;     ///< of the pair: nu/G = nu_1/G_1 + nu_2/G_2
   /// 1/Pa: (1 - 2 nu)/G of the lower body less that of the upper; zero where pressure is not coupled to it.
   double mismatch;
+  bool coupled;  ///< whether pressure moves the surfaces sideways: under layers also where mismatch is zero
   double moment_limit;  ///< N m, of the pressure on this grid; zero unless it is asked for
 };
 

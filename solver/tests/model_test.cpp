@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <type_traits>
 
 #include "solver/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
@@ -160,6 +161,10 @@ TEST(Model, IsDimensionless) {
   // The contact and a margin of two cells fill the grid.
   EXPECT_NEAR(40.0 * model.length_unit, 2.0 * paper::kContactRadius + 4.0 * model.length_unit, 1e-15);
 }
+
+// Law, grid and friction change their unit together, by on_grid() alone.
+static_assert(!std::is_assignable_v<LengthUnit&, double> && !std::is_assignable_v<LengthUnit&, LengthUnit>);
+static_assert(!std::is_constructible_v<LengthUnit, double>);
 
 /// One thread takes few cells, and a quadrant has a quarter of them. A scene that asks for threads gets them.
 TEST(Model, HasThreadsThatAreWorthTheirCells) {

@@ -71,6 +71,45 @@ TEST(Check, FindsOwnSolutionsGood) {
   }
 }
 
+// A layer's thickness and compliance are lengths: a field has cells of its own, whatever the scene's are.
+TEST(Check, JudgesLayersOnTheFieldsOwnCells) {
+  const std::vector<std::vector<std::string>> layers{
+      {"lower.layer={thickness=1e-4,young_modulus=420e9,poisson_ratio=0.25}", "contact.coupling=none"},
+      {"upper.layer={thickness=3e-4,young_modulus=20e9,poisson_ratio=0.4}", "contact.coupling=none"},
+      {"layer={kind=\"winkler\",normal_compliance=3e-16,tangential_compliance=5e-15}",
+       "grid.extent=[1.3e-3,1.3e-3]"}};
+  for (std::vector<std::string> settings : layers) {
+    settings.emplace_back("load.moment_ratio=0.5");
+    const FieldRows own = solved(scene_of("paper", 32, settings));
+    const Json same_cells = find_good(own, scene_of("paper", 32, settings));
+    const Json other_cells = find_good(own, scene_of("paper", 48, settings));
+    EXPECT_TRUE(other_cells["discrete"]["holds"].get<bool>());
+    EXPECT_NEAR(other_cells["twist_angle"].get<double>() / same_cells["twist_angle"].get<double>(), 1.0,
+                1e-9);
+    for (const Json& item : same_cells["judged"]) {
+      const std::string quantity = item["quantity"];
+      if (quantity.ends_with("_cell")) continue;  // which one is worst is a matter of rounding
+      EXPECT_NEAR(allowed(other_cells, quantity), item["allowed"], 1e-3 * item["allowed"].get<double>())
+          << quantity;
+      EXPECT_NEAR(judgement(other_cells, quantity)["value"], item["value"], 1e-6) << quantity;
+    }
+  }
+}
+
+TEST(Check, FindsALayerOfTwiceTheThicknessBadOnAnyCells) {
+  const std::vector<std::string> layer{"lower.layer={thickness=1e-4,young_modulus=420e9,poisson_ratio=0.25}",
+                                       "contact.coupling=none", "load.moment_ratio=0.5"};
+  std::vector<std::string> thick = layer;
+  thick.emplace_back("lower.layer.thickness=2e-4");
+  const FieldRows field = solved(scene_of("paper", 32, thick));
+  for (const int cells : {32, 64}) find_bad(field, scene_of("paper", cells, layer), HasSubstr("pressure"));
+}
+
+TEST(Check, FindsTheTwistOfACoatedSphere) {
+  const Json result = find_good(solved(scene_of("coated_sphere", 64)), scene_of("coated_sphere", 128));
+  EXPECT_LE(std::abs(result["twist_error"].get<double>()), 1e-2);
+}
+
 // The pressure of an ellipse has an exact answer, its tractions have none: the certificate judges those.
 TEST(Check, JudgesTheNormalContactOfAnEllipseExactly) {
   for (const char* name : {"ellipse", "turned_ellipse"}) {

@@ -84,5 +84,15 @@ TEST(PosedScene, HasThePairsConstants) {
   EXPECT_NEAR(posed.moment_limit, solved.moment_limit, 1e-9 * solved.moment_limit);
 }
 
+// Surfaces of one material on unlike bases: the pressure moves them by different amounts.
+TEST(PosedScene, IsCoupledUnderALayerOnOneBody) {
+  const solver::Scene scene = scene_with(
+      {"lower.young_modulus=70e9", "lower.layer={thickness=1e-4,young_modulus=210e9,poisson_ratio=0.3}"});
+  const PosedScene posed = pose(scene, false);
+  EXPECT_EQ(posed.mismatch, 0.0);
+  EXPECT_TRUE(posed.coupled);
+  EXPECT_FALSE(pose(scene_with({}), false).coupled);
+}
+
 }  // namespace
 }  // namespace slipstick::convergence

@@ -14,6 +14,8 @@
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/law/cell_integrals.hpp"
+#include "solver/elasticity/law/rescaled_law.hpp"
+#include "solver/elasticity/law/winkler_layer.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -125,6 +127,37 @@ double difference(const Tables& a, const Tables& b) {
     scale = std::max(scale, y.abs().maxCoeff());
   }
   return worst / scale;
+}
+
+// A layer's thickness and a foundation's compliance are lengths: counted in another unit they are other
+// numbers, and each displacement follows.
+TEST(RescaledLaw, IsTheLawWithEachOfItsLengthsInTheOtherUnit) {
+  const std::vector<PlaneWave> waves{{0.0, 0.0, 0.1}, {0.3, 0.0, 0.3}, {0.5, -1.2, 1.3}, {3.0, 4.0, 5.0}};
+  const Grid offsets{7, 5, 1.0, 0.8};
+  for (const double ratio : {0.37, 2.9}) {
+    const auto laws = [](double unit) {
+      const SharedLaw bodies = half_spaces(kSoft, kHard);
+      return std::vector<SharedLaw>{
+          bodies, std::make_shared<WinklerLayer>(bodies, 0.7 / unit, 0.4 / unit),
+          std::make_shared<CoatedHalfSpaces>(CoatedBody{kHard, 1.3 / unit, kSoft}, CoatedBody{kSoft})};
+    };
+    const std::vector<SharedLaw> in_unit = laws(1.0), in_other = laws(ratio);
+    for (std::size_t i = 0; i < in_unit.size(); ++i) {
+      const RescaledLaw law(in_unit[i], ratio);
+      const ElasticLaw& expected = *in_other[i];
+      EXPECT_LE(difference(tables_of(law, offsets), tables_of(expected, offsets)), 1e-12);
+      EXPECT_NEAR(law.least_eigenvalue(1.0, 0.8) / expected.least_eigenvalue(1.0, 0.8), 1.0, 1e-12);
+      EXPECT_EQ(law.couples(), expected.couples());
+      for (const bool tangential : {false, true}) {
+        std::vector<Symbol> found(waves.size()), right(waves.size());
+        law.inverse_symbols(tangential, 1.0, 0.8, waves, found);
+        expected.inverse_symbols(tangential, 1.0, 0.8, waves, right);
+        for (std::size_t w = 0; w < waves.size(); ++w) {
+          for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[w][k], right[w][k], 1e-12 * right[w][0]);
+        }
+      }
+    }
+  }
 }
 
 /// What the base adds to the coefficients at offset (x, y): the Fourier integral in polar coordinates of the
