@@ -10,14 +10,15 @@ from results import Unavailable, rows, value
 from tables import Table
 from wording import sci
 
-OUTCOMES = {"passed": "agrees", "failed as expected": "differs", "reported": "not compared"}
+UNDECIDED = "cannot be compared at its digits"
 LOOKS = {"agrees": {"color": style.GREEN, "marker": "o"}, "differs": {"color": style.VERMILION, "marker": "D"},
-         "✗ wrong": {"color": style.BLACK, "marker": "X"}}
+         UNDECIDED: {"color": style.GREY, "marker": "o", "markerfacecolor": "none"}, "✗ wrong": {"color": style.BLACK, "marker": "X"}}
 SHOWN = (1e-3, 1e4)  # half units of the last digit; what lies beyond is drawn there
 
 
 def outcome(row):
-    return OUTCOMES.get(row["outcome"], "✗ wrong")
+    word = row["published"]["comparison"]
+    return UNDECIDED if word == "undecided" else word or "✗ wrong"
 
 
 def author(row):
@@ -32,27 +33,24 @@ def literature(report, data_dir):
     sources = list(dict.fromkeys(map(author, compared)))
     figure, axis = style.panels(1, 1, 1.2 + 0.24 * len(sources))
     for name, look in LOOKS.items():
-        for open_ours in (False, True):  # hollow: our own error is wider than the printed digits
-            drawn = [row for row in compared if outcome(row) == name
-                     and (row["published"]["own_error"] > row["published"]["half_unit"]) == open_ours]
-            if drawn:
-                axis.plot(np.clip([abs(row["published"]["deviation"]) for row in drawn], *SHOWN),
-                          [sources.index(author(row)) for row in drawn], linestyle="", alpha=0.8, markersize=5,
-                          label=name + (" (own error larger than the digits)" if open_ours else ""),
-                          **(look | {"markerfacecolor": "none"} if open_ours else look))
+        drawn = [row for row in compared if outcome(row) == name]
+        if drawn:
+            axis.plot(np.clip([abs(row["published"]["deviation"]) for row in drawn], *SHOWN),
+                      [sources.index(author(row)) for row in drawn], linestyle="", alpha=0.8, markersize=5, label=name, **look)
     axis.axvline(1, color=style.BLACK, linewidth=0.8)
     axis.set(xscale="log", xlim=(0.6 * SHOWN[0], 1.7 * SHOWN[1]), yticks=range(len(sources)), yticklabels=sources,
              xlabel="|ours − published| over half a unit of the last printed digit")
     axis.invert_yaxis()
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     every = rows(report, "literature.gates")
-    counts = {name: sum(outcome(row) == name for row in every) for name in ("agrees", "differs", "not compared", "✗ wrong")}
+    counts = {name: sum(outcome(row) == name for row in every) for name in ("agrees", "differs", UNDECIDED, "not compared", "✗ wrong")}
     wrong = f"; {counts['✗ wrong']} are wrong" if counts["✗ wrong"] else ""
     return FigureEntry(
-        f"{counts['agrees']} of {len(every)} published numbers agree within their printed digits, {counts['differs']} differ "
-        f"for a known reason, {counts['not compared']} cannot be compared{wrong}.",
+        f"{counts['agrees']} of {len(every)} published numbers agree within their printed digits, {counts['differs']} differ for a "
+        f"known reason, {counts[UNDECIDED]} cannot be compared at their digits, {counts['not compared']} not at all{wrong}.",
         "A number agrees within half a unit of its last printed digit (the line), what the digits of its argument leave open, "
-        "and our own error; so points right of the line can agree. What lies beyond the axis is drawn at its ends.",
+        "and our own error, which is no larger than both; so points somewhat right of the line can agree. Where our own error is "
+        "larger, the number cannot be compared at its digits. What lies beyond the axis is drawn at its ends.",
         "Deviations from published numbers, over half a unit of their last digit, on a log scale, a row for each source.",
         figure, [(f"sources: {len({author(row) for row in every})}; numbers", str(len(every))),
                  *((f"numbers: {name}", str(count)) for name, count in counts.items() if count)])
@@ -63,8 +61,8 @@ def table(report):
     for row in rows(report, "literature.gates"):
         published = row["published"]
         ours = "–" if published.get("ours") is None else f"{published['ours']:.6g}"
-        error = "–" if published.get("own_error") is None else sci(published["own_error"])
+        error = "–" if published.get("own_error") is None else sci(published["own_error_half_units"])
         seen = "" if published["seen"] == "the publication itself" else f" Seen in: {published['seen']}."
         body.append([published["source"] + "." + seen, row["id"], published["text"], ours, error, outcome(row),
-                     published["differs"] or published["not_compared"] or row["why"]])
-    return Table(["source", "number", "printed", "ours", "our error", "outcome", "why"], body)
+                     published["differs"] or published["undecided"] or published["not_compared"] or row["why"]])
+    return Table(["source", "number", "printed", "ours", "our error, half units of the last digit", "outcome", "why"], body)

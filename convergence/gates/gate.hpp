@@ -15,17 +15,18 @@ namespace slipstick::convergence {
 
 /// A number that somebody else published, as a gate file says it.
 struct Published {
-  std::string text;           ///< as printed: its digits say how far it is known
-  double value = 0.0;         ///< of the text
-  double half_unit = 0.0;     ///< half a unit of its last digit; of a fraction, which is exact, its rounding
-  std::string source;         ///< author, year, title, table or equation, page
-  std::string seen;           ///< the text in which it was looked up, where that is another
-  double argument_error = 0;  ///< what the printed digits of its argument leave open
-  double times = 1.0;         ///< the published number is this many times ours
-  bool inverse = false;       ///< or this over ours
+  std::string text;        ///< as printed: its digits say how far it is known
+  double value = 0.0;      ///< of the text
+  double half_unit = 0.0;  ///< half a unit of its last digit; of a fraction, which is exact, of its twelfth
+  std::string source;      ///< author, year, title, table or equation, page
+  std::string seen;        ///< the text in which it was looked up, where that is another
+  double argument_error = 0;             ///< what the printed digits of its argument leave open
+  double times = 1.0;                    ///< the published number is this many times ours
+  bool inverse = false;                  ///< or this over ours
   std::optional<double> relative_error;  ///< of our number, where the result states none
   double own_error = 0.0;                ///< of our number, in its unit; known once it is bounded
   std::string differs;                   ///< why ours is another; empty: it agrees
+  std::string undecided;                 ///< why ours is not known to its digits; empty: it is
   std::string not_compared;              ///< why it cannot be compared; empty: it can
 };
 
@@ -158,17 +159,20 @@ std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const Process
 
 // ---------------------------------------------------------------- published numbers (published.cpp)
 
-/// The gate with bounds on our number: it agrees within half a unit of the last printed digit, what the
-/// digits of the argument leave open, and our own error, as the result states it beside the number
-/// (`uncertainty`, or relative_uncertainty in what contains it). Throws InputError where the result states
-/// none.
-Gate bounded_by_publication(Gate gate, const Json& result);
+/// Judges a published number. It agrees within half a unit of the last printed digit, what the digits of the
+/// argument leave open, and our own error, as the result states it beside the number (`uncertainty`, or
+/// relative_uncertainty in what contains it). Where our own error is larger than what digits and argument
+/// leave open, nothing agrees: the number differs by more than that, or is undecided, which is reported where
+/// the gate says so (`undecided`) and refused otherwise. Throws InputError where the result states no error.
+Judgement judge_published(Gate gate, const Json& result);
 
-/// What became of it, in words; empty where something is wrong, or the gate has no published number.
+/// The outcome in words: agrees, differs, undecided (it cannot be compared at its digits), not compared;
+/// empty where something is wrong, or the gate has no published number.
 std::string published_outcome(const Judgement& judgement);
 
-/// The number beside ours, in its own unit: {text, value, half_unit, source, seen, argument_error, ours,
-/// own_error, deviation, differs, not_compared}; deviation is ours minus the published number over half_unit.
+/// The number beside ours, in its own unit: {text, value, half_unit, source, seen, argument_error,
+/// comparison, ours, own_error, own_error_half_units, deviation, differs, undecided, not_compared}; deviation
+/// is ours minus the published number, over half_unit.
 Json published_json(const Judgement& judgement);
 
 // ---------------------------------------------------------------- what became of them (gate_report.cpp)

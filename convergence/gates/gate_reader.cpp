@@ -116,9 +116,13 @@ Published read_published(SceneReader& reader, const GateTable& at) {
   published.times = reader.number_or(at.shared("times"), 1.0);
   published.inverse = reader.flag_or(at.shared("inverse"), false);
   published.differs = reader.text_or(at.shared("differs"), "");
+  published.undecided = reader.text_or(at.shared("undecided"), "");
   published.not_compared = reader.text_or(at.shared("not_compared"), "");
   if (!published.differs.empty() && !published.not_compared.empty()) {
     reader.fail(at.own("not_compared"), "beside differs", "one or the other");
+  }
+  if (!published.undecided.empty() && !(published.differs + published.not_compared).empty()) {
+    reader.fail(at.own("undecided"), "beside differs or not_compared", "one of them");
   }
   for (const char* const other : {"of", "within", "below", "above", "equals"}) {
     refuse_beside_published(reader, at.own(other));
@@ -216,6 +220,8 @@ solver::SettingKeys shared_keys() {
       {"inverse", KeyType::flag, "", "false", kAny, "The published number is `times` over the quantity."},
       {"differs", KeyType::text, "", "none", kAny,
        "Why the published number is another: then the gate must not hold."},
+      {"undecided", KeyType::text, "", "none", kAny,
+       "Why our own error is larger than the printed digits: then the number is not compared at its digits."},
       {"not_compared", KeyType::text, "", "none", kAny, "Why it cannot be compared: then nothing is solved."},
       {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
        kNotNegative, "By how much machines and compilers differ."},

@@ -69,9 +69,9 @@ std::string published_counts(const std::vector<Judgement>& judgements) {
   }
   if (sources.empty()) return "";
   return fmt::format(
-      "published numbers of {} tables or equations: {} agree, {} differ for a known reason, {} not "
-      "compared\n",
-      sources.size(), counts["agrees"], counts["differs"], counts["not compared"]);
+      "published numbers of {} tables or equations: {} agree, {} differ for a known reason, {} cannot be "
+      "compared at their digits, {} not compared\n",
+      sources.size(), counts["agrees"], counts["differs"], counts["undecided"], counts["not compared"]);
 }
 
 std::string value_text(const Json& value) {
@@ -83,7 +83,9 @@ std::string value_text(const Json& value) {
 std::string value_text(const Judgement& judgement) {
   if (!judgement.gate.published) return value_text(judgement.value);
   const Json published = published_json(judgement);
-  return published.contains("ours") ? fmt::format("{:.8g}", published["ours"].get<double>()) : "-";
+  if (!published.contains("ours")) return "-";
+  return fmt::format("{:.8g} (own error {:.2g} half units)", published["ours"].get<double>(),
+                     published["own_error_half_units"].get<double>());
 }
 
 /// Whether the gate was read; a file that could not be has no quantity.

@@ -131,7 +131,7 @@ Judgement judge(const Gate& gate, const Source& source, const Source* other) {
   if (!refused.empty()) return refuse(gate, refused);
   if (gate.kind == GateSource::none) return not_compared(gate);
   try {
-    if (gate.published) return judge(bounded_by_publication(gate, source.result), source.result);
+    if (gate.published) return judge_published(gate, source.result);
     return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);
   } catch (const InputError& error) {
     return refuse(gate, error.what());

@@ -1,9 +1,10 @@
 
 #include "convergence/gates/gate.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <regex>
 #include <utility>
 
@@ -34,27 +35,7 @@ double in_our_unit(const Published& published, double value) {
   return published.inverse ? published.times / value : value / published.times;
 }
 
-}  // namespace
-
-std::optional<Published> read_printed(const std::string& text) {
-  static const std::regex fraction(R"((\d{1,9})/([1-9]\d{0,8}))");
-  static const std::regex form(R"(([+-]?\d+(?:\.(\d*))?)(?:[eE]([+-]?\d{1,2}))?)");
-  std::smatch parts;
-  Published published;
-  published.text = text;
-  if (std::regex_match(text, parts, fraction)) {
-    published.value = std::stod(parts[1]) / std::stod(parts[2]);
-    published.half_unit = std::numeric_limits<double>::epsilon() * published.value;
-    return published;
-  }
-  if (!std::regex_match(text, parts, form)) return {};
-  const int exponent = parts[3].matched ? std::stoi(parts[3]) : 0;
-  const auto decimals = static_cast<int>(parts[2].length());
-  published.value = std::stod(text);
-  published.half_unit = 0.5 * std::pow(10.0, exponent - decimals);
-  return published;
-}
-
+/// The gate with bounds on our number.
 Gate bounded_by_publication(Gate gate, const Json& result) {
   const FoundQuantity found = find_quantity(result, gate.quantity);
   Published& published = *gate.published;
@@ -77,24 +58,81 @@ Gate bounded_by_publication(Gate gate, const Json& result) {
   return gate;
 }
 
+/// Our own error over half a unit of the last digit.
+double own_half_units(const Published& published, double ours) {
+  return published.own_error * std::abs(in_unit_of_publication(published, ours) / ours) / published.half_unit;
+}
+
+}  // namespace
+
+std::optional<Published> read_printed(const std::string& text) {
+  static const std::regex fraction(R"((\d{1,9})/([1-9]\d{0,8}))");
+  static const std::regex form(R"(([+-]?\d+(?:\.(\d*))?)(?:[eE]([+-]?\d{1,2}))?)");
+  std::smatch parts;
+  Published published;
+  published.text = text;
+  if (std::regex_match(text, parts, fraction)) {
+    published.value = std::stod(parts[1]) / std::stod(parts[2]);
+    constexpr double kFractionDigits = 12.0;  // as far as exact answers are good
+    published.half_unit = 0.5 * std::pow(10.0, -kFractionDigits) * std::abs(published.value);
+    return published;
+  }
+  if (!std::regex_match(text, parts, form)) return {};
+  const int exponent = parts[3].matched ? std::stoi(parts[3]) : 0;
+  const auto decimals = static_cast<int>(parts[2].length());
+  published.value = std::stod(text);
+  published.half_unit = 0.5 * std::pow(10.0, exponent - decimals);
+  return published;
+}
+
+Judgement judge_published(Gate gate, const Json& result) {
+  Judgement judgement = judge(bounded_by_publication(std::move(gate), result), result);
+  const Published& published = *judgement.gate.published;
+  const bool within =
+      judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
+  const double own =
+      judgement.value.is_number() ? own_half_units(published, judgement.value.get<double>()) : 0.0;
+  const bool known = own * published.half_unit <= published.half_unit + published.argument_error;
+  if (within && !known) {
+    judgement.outcome = published.undecided.empty() ? Outcome::refused : Outcome::reported;
+    judgement.why = fmt::format(
+        "our own error is {:.3g} half units of the last printed digit: it cannot be compared at its "
+        "digits{}",
+        own,
+        published.undecided.empty() ? "; improve ours, or say why: undecided" : ": " + published.undecided);
+  } else if (!published.undecided.empty() && judgement.outcome == Outcome::passed) {
+    judgement.outcome = Outcome::passed_unexpectedly;
+    judgement.why = "agrees with the published number: remove undecided";
+  }
+  return judgement;
+}
+
 std::string published_outcome(const Judgement& judgement) {
   if (!judgement.gate.published) return "";
   if (judgement.outcome == Outcome::passed) return "agrees";
   if (judgement.outcome == Outcome::failed_as_expected) return "differs";
-  return judgement.outcome == Outcome::reported ? "not compared" : "";
+  if (judgement.outcome != Outcome::reported) return "";
+  return judgement.gate.published->undecided.empty() ? "not compared" : "undecided";
 }
 
 Json published_json(const Judgement& judgement) {
   const Published& published = *judgement.gate.published;
-  Json json{{"text", published.text},           {"value", published.value},
-            {"half_unit", published.half_unit}, {"source", published.source},
-            {"seen", published.seen},           {"argument_error", published.argument_error},
-            {"differs", published.differs},     {"not_compared", published.not_compared}};
+  Json json{{"text", published.text},
+            {"value", published.value},
+            {"half_unit", published.half_unit},
+            {"source", published.source},
+            {"seen", published.seen},
+            {"argument_error", published.argument_error},
+            {"differs", published.differs},
+            {"undecided", published.undecided},
+            {"not_compared", published.not_compared},
+            {"comparison", published_outcome(judgement)}};
   if (!judgement.value.is_number()) return json;
   const double ours = judgement.value.get<double>();
   const double shown = in_unit_of_publication(published, ours);
   json["ours"] = shown;
   json["own_error"] = published.own_error * std::abs(shown / ours);
+  json["own_error_half_units"] = own_half_units(published, ours);
   json["deviation"] = (shown - published.value) / published.half_unit;
   return json;
 }

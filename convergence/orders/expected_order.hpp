@@ -24,6 +24,10 @@ const std::vector<ErrorQuantity>& error_quantities();
 /// Quantities that it looks at where there is none, or where it does not say them.
 const std::vector<std::string>& value_quantities();
 
+/// The powers of the cell size in the error of a number of loads or motions where the edges of contact and
+/// stick are straight and lie between cells, and the tractions there are singular: the leading ones.
+const std::vector<double>& aligned_edge_powers();
+
 /// The order of an error, or of a value's error, in a scene. It follows from the pressure model and from how
 /// the indenter's pressure ends.
 ExpectedOrder expected_order(const std::string& quantity, const solver::Scene& scene);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "solver/newton/coefficients.hpp"
 #include "solver/scene/bracketed_root.hpp"
@@ -210,12 +211,47 @@ PowerFit chosen_fit(const std::optional<PowerFit>& with_order, const Meshes& mes
   return best_of(meshes, {{1.0}, {2.0}, {1.0, 2.0}});
 }
 
-std::string method_of(const PowerFit& fit, bool with_order) {
+std::string terms_text(std::span<const double> powers) {
   std::string terms;
-  for (const double power : fit.powers)
-    terms += fmt::format("{}h^{:.3g}", terms.empty() ? "" : " and ", power);
-  return fmt::format("least squares with {}{}{}", terms, with_order ? ", fitted" : ", given",
+  for (const double power : powers) terms += fmt::format("{}h^{:.3g}", terms.empty() ? "" : " and ", power);
+  return terms;
+}
+
+std::string method_of(const PowerFit& fit, bool with_order) {
+  return fmt::format("least squares with {}{}{}", terms_text(fit.powers), with_order ? ", fitted" : ", given",
                      fit.weighted ? ", weighted by 1/h" : "");
+}
+
+/// The weights of `powers.size() + 1` meshes whose weighted sum has no error in these powers.
+VectorXd extrapolation_weights(const Meshes& meshes, const std::vector<double>& powers) {
+  const auto count = static_cast<Eigen::Index>(meshes.size());
+  const ArrayXd sizes = column(meshes, &MeshSample::size) / meshes.back().size;
+  MatrixXd terms(count, count);
+  terms.row(0).setOnes();
+  for (Eigen::Index k = 1; k < count; ++k) {
+    terms.row(k) = sizes.pow(powers[static_cast<std::size_t>(k) - 1]).matrix().transpose();
+  }
+  return solver::least_squares(terms, VectorXd::Unit(count, 0));
+}
+
+/// A limit by the first `count` powers, from the `count` + 1 meshes that end before `end`.
+struct Extrapolated {
+  double value;
+  double doubt;  ///< noise and scatter of the meshes
+};
+
+Extrapolated extrapolated(const Meshes& all, std::size_t end, const std::vector<double>& powers,
+                          std::size_t count) {
+  const auto last = all.begin() + static_cast<std::ptrdiff_t>(end);
+  const Meshes meshes(last - static_cast<std::ptrdiff_t>(count + 1), last);
+  const VectorXd weights = extrapolation_weights(meshes, powers);
+  Extrapolated sum{0.0, 0.0};
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    sum.value += weight * meshes[i].value;
+    sum.doubt += std::abs(weight) * uncertainty(meshes[i]);
+  }
+  return sum;
 }
 
 /// Uncertainty of the finest mesh by the method's rules.
@@ -299,6 +335,23 @@ Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
   }
   return {finest - found.left, safety_factor(found.order) * std::abs(found.left) + limit_doubt, order,
           fmt::format("Richardson with h^{:.3g}", found.order)};
+}
+
+Limit expansion_limit(const std::vector<MeshSample>& values, const std::vector<double>& powers,
+                      double expected) {
+  constexpr double kAgreement = 2.0;  // the uncertainty over the distance of successive extrapolations
+  const auto [meshes, left_out] = coarsest_first(values);
+  const std::size_t all = meshes.size();
+  if (all < kMinMeshes) return least_squares_limit(values, expected);
+  const std::size_t count = std::min(powers.size(), all - 2);
+  const auto [limit, doubt] = extrapolated(meshes, all, powers, count);
+  const double without_finest = extrapolated(meshes, all - 1, powers, count).value;
+  const double with_one_less = extrapolated(meshes, all, powers, count - 1).value;
+  const double change = std::max(std::abs(limit - without_finest), std::abs(limit - with_one_less));
+  std::vector<MeshSample> errors = values;
+  for (MeshSample& error : errors) error.value -= limit;
+  return {limit, kAgreement * change + doubt, fit_order(errors, expected),
+          "extrapolation with " + terms_text(std::span(powers).first(count))};
 }
 
 }  // namespace slipstick::convergence

@@ -46,7 +46,7 @@ Finding judge_literature(const Json& all) {
   const Json& counts = all["counts"];
   return {
       "Literature",
-      fmt::format("{} of {} published numbers agree, {} differ for a known reason",
+      fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
                   counts["passed"].get<int>(), all["gates"].size(), counts["failed as expected"].get<int>()) +
           wrong_gates(all["gates"]),
       all["exit_code"] == 0};

@@ -119,9 +119,22 @@ std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, 
   return chosen;
 }
 
+/// Whether every cell of every grid sticks: then the edges of contact and stick lie between cells.
+bool is_aligned(const solver::Scene& scene, const std::vector<MeshResults>& results) {
+  if (scene.pressure != solver::PressureModel::solved) return false;
+  return std::ranges::all_of(results, [](const MeshResults& at) {
+    return std::ranges::all_of(at.grids, [](const Json& result) {
+      return number_at(result, "stick_cells") ==
+             number_at(result, "cells[0]") * number_at(result, "cells[1]");
+    });
+  });
+}
+
 /// The limit of a curve of values; the curve becomes that of its errors relative to it.
-Limit find_limit(Curve& curve, const ExpectedOrder& expected) {
-  const Limit limit = least_squares_limit(curve.samples, expected.value);
+Limit find_limit(Curve& curve, const ExpectedOrder& expected, bool aligned) {
+  const Limit limit = aligned && std::isfinite(expected.value)
+                          ? expansion_limit(curve.samples, aligned_edge_powers(), expected.value)
+                          : least_squares_limit(curve.samples, expected.value);
   const double scale = std::abs(limit.value);
   for (MeshSample& sample : curve.samples) {
     sample = {sample.size, sample.value / limit.value - 1.0, sample.spread / scale, sample.grids,
@@ -302,7 +315,7 @@ Json judge_series(const Study& study, const Series& series, const std::vector<Me
     if (exact) {
       order = fit_order(curve.samples, expected.value);
     } else {
-      const Limit limit = find_limit(curve, expected);
+      const Limit limit = find_limit(curve, expected, is_aligned(scene, results));
       order = limit.order;
       order.constant /= limit.value;  // as the curve is now
       Json& found = json["extrapolated"][path];
@@ -328,7 +341,7 @@ bool needs_tightening(const Study& study, const Series& series, const std::vecto
     Curve curve = make_curve(series, results, path, exact);
     const ExpectedOrder expected = expected_order(path, scene);
     if (!std::isfinite(expected.value)) continue;
-    if (!exact) find_limit(curve, expected);
+    if (!exact) find_limit(curve, expected, is_aligned(scene, results));
     if (iteration_shows(curve, series)) return true;
   }
   return false;

@@ -72,6 +72,13 @@ quantity = "number"
 published = "1"
 published_in = "Somebody"
 not_compared = "no such scene"
+[[gate]]
+id = "f"
+scene = "scene.toml"
+quantity = "number"
+published = "1"
+published_in = "Somebody"
+undecided = "a coarse study"
 )";
 constexpr const char* kWholeCases = R"([[family]]
 name = "all"

@@ -88,11 +88,13 @@ def peer(program, verdict, over):
             "certificate": {"gap": 1e-5}, "slip_direction": {"mean": 1.5}, "judged": judged}
 
 
-def published(name, outcome, text, value, ours, differs="", not_compared=""):
+def published(name, comparison, text, value, ours, own=1e-9, **why):
     found = {"text": text, "value": value, "half_unit": 0.005, "source": f"Some{name} (1900), Title: Table 1",
-             "seen": "a later text", "argument_error": 0.0, "differs": differs, "not_compared": not_compared}
+             "seen": "a later text", "argument_error": 0.0, "comparison": comparison,
+             **{key: why.get(key, "") for key in ("differs", "undecided", "not_compared")}}
     if ours is not None:
-        found |= {"ours": ours, "own_error": 1e-9, "deviation": (ours - value) / 0.005}
+        found |= {"ours": ours, "own_error": own, "own_error_half_units": own / 0.005, "deviation": (ours - value) / 0.005}
+    outcome = {"agrees": "passed", "differs": "failed as expected"}.get(comparison, "reported")
     return {"id": name, "outcome": outcome, "why": "", "published": found}
 
 
@@ -130,9 +132,10 @@ def small_paper():
         "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
         "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
                              "reason": "it <matters>"}]},
-        "literature": {"gates": [published("agreed", "passed", "1.10", 1.1, 1.1002), published("other", "failed as expected",
-                                 "2.0", 2.0, 2.2, differs="it <differs>"),
-                                 published("left", "reported", "3", 3.0, None, not_compared="not here")]},
+        "literature": {"gates": [published("agreed", "agrees", "1.10", 1.1, 1.1002),
+                                 published("other", "differs", "2.0", 2.0, 2.2, differs="it <differs>"),
+                                 published("coarse", "undecided", "2.0", 2.0, 2.01, own=0.5, undecided="a staircase"),
+                                 published("left", "not compared", "3", 3.0, None, not_compared="not here")]},
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
     }
 

@@ -116,12 +116,14 @@ class WholePage(unittest.TestCase):
         part = self.page[self.page.index('<section id="literature"'):self.page.index('<section id="beyond"')]
         cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", part)][1:]
         self.assertEqual(cells, [
-            ["Someagreed (1900), Title: Table 1. Seen in: a later text.", "agreed", "1.10", "1.1002", "1.0×10⁻⁹", "agrees", ""],
-            ["Someother (1900), Title: Table 1. Seen in: a later text.", "other", "2.0", "2.2", "1.0×10⁻⁹", "differs",
+            ["Someagreed (1900), Title: Table 1. Seen in: a later text.", "agreed", "1.10", "1.1002", "2.0×10⁻⁷", "agrees", ""],
+            ["Someother (1900), Title: Table 1. Seen in: a later text.", "other", "2.0", "2.2", "2.0×10⁻⁷", "differs",
              "it &lt;differs&gt;"],
+            ["Somecoarse (1900), Title: Table 1. Seen in: a later text.", "coarse", "2.0", "2.01", "1.0×10²",
+             "cannot be compared at its digits", "a staircase"],
             ["Someleft (1900), Title: Table 1. Seen in: a later text.", "left", "3", "–", "–", "not compared", "not here"]])
-        self.assertIn("1 of 3 published numbers agree within their printed digits, 1 differ for a known reason, 1 cannot be "
-                      "compared.", self.page)
+        self.assertIn("1 of 4 published numbers agree within their printed digits, 1 differ for a known reason, 1 cannot be "
+                      "compared at their digits, 1 not at all.", self.page)
 
     def test_map_of_hard_scenes(self):
         part = self.part("map")

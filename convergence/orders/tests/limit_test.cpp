@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/tests/made_sequences.hpp"
 
 namespace slipstick::convergence {
@@ -230,6 +231,47 @@ TEST(Limit, OfTwoTermsLiesWithinItsUncertainty) {
       EXPECT_EQ(found.order.verdict, finest < 0.05 ? asymptotic : preasymptotic) << found.order.why;
     }
   }
+}
+
+/// Sums of the powers that edges and corners leave, where the corner's power may be another than the one that
+/// is taken (shear tractions have another than pressures).
+TEST(Limit, OfKnownPowersLiesWithinItsUncertainty) {
+  constexpr int repetitions = 500;
+  std::mt19937 random(3);
+  std::normal_distribution<double> factor;
+  std::uniform_real_distribution<double> doubled_alpha(0.5, 0.9);
+  int held = 0;
+  for (int i = 0; i < repetitions; ++i) {
+    const double corner = doubled_alpha(random);
+    std::vector<std::pair<double, double>> terms;
+    for (const double power : {1.0, 1.0 + corner, 2.0, 2.0 + corner, 3.0, 4.0}) {
+      terms.emplace_back(power, factor(random));
+    }
+    std::vector<double> sizes;
+    for (const double cells : {24, 32, 48, 64, 96, 128, 192}) sizes.push_back(2.0 / cells);
+    const Limit found = expansion_limit(made(sizes,
+                                             [&](double h) {
+                                               double sum = kLimit;
+                                               for (const auto& [power, by] : terms)
+                                                 sum += by * std::pow(h, power);
+                                               return sum;
+                                             }),
+                                        aligned_edge_powers(), 1.0);
+    held += std::abs(found.value - kLimit) <= found.uncertainty ? 1 : 0;
+    EXPECT_LE(found.uncertainty, 1e-4);
+  }
+  EXPECT_GE(held, 0.985 * repetitions);
+}
+
+TEST(Limit, OfFewKnownPowersIsTheirs) {
+  const auto two = [](double h) { return kLimit + h - h * h; };
+  const Limit found = expansion_limit(made({1.0, 0.6, 0.5, 0.3}, two), {1.0, 2.0}, 1.0);
+  EXPECT_NEAR(found.value, kLimit, kRounding);
+  Meshes noisy = made({1.0, 0.6, 0.5, 0.3}, two);
+  for (MeshSample& mesh : noisy) mesh.noise = 1e-3;
+  EXPECT_GT(expansion_limit(noisy, {1.0, 2.0}, 1.0).uncertainty, found.uncertainty + 1e-3)
+      << "weights of extrapolation enlarge noise";
+  EXPECT_EQ(expansion_limit(made({1.0, 0.5}), {1.0, 2.0}, 1.0).order.verdict, too_few);
 }
 
 }  // namespace
