@@ -13,10 +13,18 @@ from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, percent, plain
 UNITS = {"m": LENGTHS, "Pa": STRESSES, "rad": ANGLES, "N m": MOMENTS, "J": ENERGIES}
 
 
+def _part(error):
+    """A relative error; – where it is not known."""
+    return "–" if error is None else "0" if error == 0 else sci(abs(error)) if abs(error) < 1e-3 else percent(abs(error))
+
+
 def _error(row):
-    """What the mesh leaves open of a number."""
-    error = None if row["error"] is None else abs(row["error"])
-    return "–" if error is None else sci(error) if error < 1e-3 else percent(error)
+    """How far a number may be off."""
+    return _part(row["error"])
+
+
+def _error_with_parts(row):
+    return _error(row) + (f" (mesh {_part(row['mesh'])}, steps {_part(row['path'])})" if row["path"] and row["mesh"] is not None else "")
 
 
 def _judged(page):
@@ -38,7 +46,7 @@ def remembered(page):
     answer, judged = page["answer"], _judged(page)
     gap, time, _ = _sums(answer)
     shown = [row for row in page["numbers"] if row is judged or (row["key"] == "stick_radius" and row["error"] is not None)]
-    tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'what the mesh leaves open'} of the {row['words']}")
+    tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'what mesh and steps leave open'} of the {row['words']}")
              for row in shown]
     if gap is not None:
         tiles.append((sci(gap), "gap in Coulomb’s law, over the energy"))
@@ -62,14 +70,16 @@ def index(pages):
         picture = Markup('<a href="{0}/index.html"><img src="{0}/figures/answer.svg" width="260" loading="lazy" alt="slip and stick, '
                          'tractions, pressure of {1}"></a>').format(folder, page["scene"]["name"])
         checks = page["headline"]["counts"]["checks"]
-        broken = "; ".join(f"{what}: {typeset(line)}" for what, line in page["headline"]["lines"] if checks[what] != "holds")
+        verdict, worst = page["headline"]["verdict"], "fails" if "fails" in checks.values() else "open"
+        said = Markup("; ").join(Markup("{}: {}").format(what, typeset(line)) for what, line in page["headline"]["lines"]
+                                 if checks[what] == worst)
         body.append([Markup('<a href="{}/index.html">{}</a>').format(folder, page["scene"]["name"]), picture,
                      _first_sentence(page["scene"]["text"]),
-                     "✓ good" if page["headline"]["verdict"] == "good" else f"✗ bad: {broken}",
-                     *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error(judged))),
+                     "✓ good" if verdict == "good" else Markup("{}: {}").format({"open": "○ open", "bad": "✗ bad"}[verdict], said),
+                     *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error_with_parts(judged))),
                      "–" if gap is None else sci(gap), f"{applications:.0f}", str(len(answer.get("steps") or [0])),
                      "×".join(map(str, answer["cells"])), seconds(time)])
-    return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or what the mesh leaves open",
+    return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or what mesh and steps leave open",
                   "gap / energy", "applica&shy;tions", "steps", "cells", "time, s"], body)
 
 
@@ -83,13 +93,15 @@ def numbers(page):
     inputs = page.get("uncertainty", {}).get("outputs")
     body = []
     for row in results.rows(page, "numbers"):
-        body.append([row["words"], with_unit(row, "value"), with_unit(row, "reference"), _error(row), typeset(row["basis"])])
+        body.append([row["words"], with_unit(row, "value"), with_unit(row, "reference"), _error(row),
+                     _part(row["mesh"]), _part(row["path"]), typeset(row["basis"])])
         if inputs is not None:
             relative = inputs.get(row["key"], {}).get("relative")
-            body[-1].insert(4, "–" if relative is None else percent(relative))
-    head = ["number", "value on the finest mesh", "reference", "what the mesh leaves open", "how that is known"]
+            body[-1].insert(6, "–" if relative is None else percent(relative))
+    head = ["number", "value on the finest mesh", "reference", "error, or how far it may be off", "of which the mesh",
+            "of which the length of the steps", "how that is known"]
     if inputs is not None:
-        head.insert(4, "what the inputs make of it")
+        head.insert(6, "what the inputs make of it")
     return Table(head, body)
 
 

@@ -73,21 +73,44 @@ def _along(steps, key):
     return pairs @ (longest / (np.hypot(*longest) or 1.0))
 
 
-def _varies(values):
-    return np.isfinite(values).all() and np.ptp(values) > 1e-9 * np.max(np.abs(values), initial=0.0)
+ROUNDING = 1e-9  # loads and motions below this part of their scale are those of rounding
+FEWEST_ON_A_BRANCH = 4  # points from one reversal to the next that show how it is curved
+
+
+def _scale(answer, steps, key):
+    """The size that a load or a motion may have: of motions that of all of them together, as displacements."""
+    radius = answer.get("contact_radius") or 0.0
+    turned, moved = (np.max(np.abs(_along(steps, motion)), initial=0.0) for motion in ("twist_angle", "displacement"))
+    scales = {"moment": answer.get("moment_limit"), "force": answer.get("friction_force"),
+              "twist_angle": max(turned, moved / radius) if radius else turned, "displacement": max(moved, turned * radius)}
+    return scales.get(key) or np.max(np.abs(_along(steps, key)), initial=0.0)
+
+
+def _varies(answer, steps, key):
+    values = _along(steps, key)
+    return np.isfinite(values).all() and np.ptp(values) > ROUNDING * _scale(answer, steps, key)
+
+
+def _shows_branches(load):
+    """Whether each stretch between two reversals of a load, the first one from zero, has points enough."""
+    change = np.diff(load)
+    ends = np.flatnonzero(np.sign(change[1:]) != np.sign(change[:-1])) + 1
+    return np.min(np.diff(np.concatenate([[0], ends, [load.size - 1]]))) >= FEWEST_ON_A_BRANCH
 
 
 def loop(page, folder):
     """Loads against motions, step by step."""
-    steps = rows(page, "answer.steps")
+    answer, steps = value(page, "answer"), rows(page, "answer.steps")
     pairs = [pair for pair in (("twist_angle", "moment"), ("displacement", "force"), ("approach", "normal_load"))
-             if all(_varies(_along(steps, key)) for key in pair)]
+             if all(_varies(answer, steps, key) for key in pair)]
     if not pairs:
         raise Unavailable("no load and no motion changes from step to step")
     figure, axes = style.panels(1, len(pairs), 3.2, squeeze=False)
     words = {**MOTIONS, "normal_load": ("normal load", "N")}
+    curved = all(_shows_branches(np.insert(_along(steps, load), 0, 0.0)) for _, load in pairs)
     for axis, (motion, load) in zip(axes[0], pairs):
-        axis.plot(*(np.insert(_along(steps, key), 0, 0.0) for key in (motion, load)), "-o", color=style.BLUE, markersize=3, label="computed")
+        axis.plot(*(np.insert(_along(steps, key), 0, 0.0) for key in (motion, load)), "-o" if curved else ":o", color=style.BLUE,
+                  markersize=3, label="computed")
         exact = [step.get("exact") or {} for step in steps]
         if all(each.get(motion) is not None and each.get(load) is not None for each in exact):
             axis.plot(_along(exact, motion), _along(exact, load), "x", color=style.BLACK, markersize=5, label="exact")
@@ -96,13 +119,20 @@ def loop(page, folder):
         axis.legend()
     lost = number(page, "answer.history.dissipated")
     return FigureEntry(f"The history in {len(steps)} steps; friction takes {quantity(lost, ENERGIES)} in all.",
-                       "A point for each step, from no load on. What lies within a closed loop is the energy that it loses.",
+                       "A point for each step, from no load on. " + (
+                           "What lies within a closed loop is the energy that it loses." if curved else
+                           "Dotted lines only join the points in their order: the contact itself follows curves between them, which more "
+                           "steps from one reversal to the next would show, and the energy lost is not what lies within the lines."),
                        "Loads against motions, step by step.", figure)
+
+
+NEXT_TO_NOTHING = 0.9  # of an error: what is gained by less is not worth its time
 
 
 def cost(page, folder):
     """Error against time of each method, mesh and tolerance."""
     points = [point for point in rows(page, "cost.points") if point["seconds"] is not None and point["error"]]
+    points.sort(key=lambda each: each["seconds"])
     if not points:
         raise Unavailable("no solve has an error that is known")
     figure, axis = style.panels(1, 1, 3.6)
@@ -110,8 +140,8 @@ def cost(page, folder):
         words, look = METHODS.get(method, (method, OTHER))
         axis.plot(column(found, "seconds"), column(found, "error"), label=style.verbatim(words), **look | dict(linestyle=""))
     best, finest = [], np.inf
-    for point in sorted(points, key=lambda each: each["seconds"]):
-        if point["error"] < finest:
+    for point in points:
+        if point["error"] < NEXT_TO_NOTHING * finest:
             finest = point["error"]
             best.append(point)
     axis.step([point["seconds"] for point in best], [point["error"] for point in best], where="post", color=style.BLACK,
@@ -129,7 +159,8 @@ def cost(page, folder):
                f"{escape(METHODS.get(last['method'], (last['method'],))[0])}, {last['cells']} cells along the longer side, tolerance "
                f"{sci(last['tolerance'])}.")
     known = "against the exact answer" if not floor else (
-        f"against the value that the meshes tend to, known to {percent(floor)}: nothing is known below, where it is grey")
+        f"at most: the distance from the value that the meshes tend to, and {percent(floor)} by which that itself may be off, with the "
+        "length of the steps. Nothing is known below, where it is grey")
     return FigureEntry(message, f"A point for each method, mesh and tolerance; the line joins those that no other beats. The error is "
                        f"{known}. Solves that did not converge or were refused have no point.",
                        "Log-log points of error against time.", figure)

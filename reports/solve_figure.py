@@ -158,7 +158,8 @@ def details(solved):
     result = solved.result
     parts = [style.verbatim(text(result, "name"))]
     if result.get("steps"):
-        parts.append("end of step {} of {}".format(style.verbatim(result["steps"][-1]["name"]), len(result["steps"])))
+        count, name = len(result["steps"]), result["steps"][-1]["name"]
+        parts.append(f"end of step {count} of {count}" + ("" if name.isdigit() else f", “{style.verbatim(name)}”"))
     if value(result, "cells"):
         parts.append("{} × {} cells".format(*value(result, "cells")))
     parts.append(f"normal load {plain(number(result, 'normal_load'))} N")

@@ -159,13 +159,18 @@ def draw_tolerance_errors(axis, series, quantity):
             tolerance_line(axis, one, numbers(one.tolerances, quantity))
         tolerance_line(axis, one, numbers(one.tolerances, "iteration", quantity), **dashed)
     words = quantity_words(quantity)
-    axis.set(xscale="log", title=f"error: {words}" if is_error else f"{words}, from the tightest run")
-    if any((np.array(line.get_ydata()) > 0).any() for line in axis.lines):
-        axis.set_yscale("log")
-    else:
-        axis.set(ylim=(-1, 1), yticks=[0])  # zero on all rows has no place on a log scale
+    axis.set(xscale="log", yscale="log", title=f"error: {words}" if is_error else f"{words}, from the tightest run")
     axis.invert_xaxis()
     axis.yaxis.set_minor_locator(NullLocator())
+
+
+def moved_by_tolerance(series, quantities):
+    """Those of the quantities that a tolerance has some effect on, or whose error is known."""
+    def shown(quantity):
+        rows = [numbers(one.tolerances, quantity) if has_exact_answer(series, quantity) else
+                numbers(one.tolerances, "iteration", quantity) for one in series]
+        return any((np.abs(found) > 0).any() for found in rows)
+    return [each for each in quantities if shown(each[1])]
 
 
 def look_handles(series):
@@ -180,11 +185,12 @@ def draw(study, head=0.0):
     series = study_result.read(study)
     quantities = study_result.main_quantities(series)
     to_tolerances = [one for one in series if one.tolerances]
+    moved = moved_by_tolerance(to_tolerances, quantities)
     sections = []
     if study_result.has_meshes(series):
         sections += [(_draw_error_section, 2.9 * -(-_error_panels(series, quantities) // 2)), (_draw_budget_section, 2.5)]
     if to_tolerances:
-        sections.append((_draw_tolerance_section, 2.9 * -(-(1 + len(quantities)) // 2)))
+        sections.append((_draw_tolerance_section, 2.9 * -(-(1 + len(moved)) // 2)))
     if not sections:
         raise Unavailable("the study has one mesh and one tolerance: nothing to compare")
     handles = look_handles(series)
@@ -194,7 +200,7 @@ def draw(study, head=0.0):
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - top / height))
     parts = np.atleast_1d(figure.subfigures(len(sections), 1, height_ratios=[height for _, height in sections]))
     for part, (draw_section, _) in zip(parts, sections):
-        draw_section(part, to_tolerances if draw_section is _draw_tolerance_section else series, quantities)
+        draw_section(part, *((to_tolerances, moved) if draw_section is _draw_tolerance_section else (series, quantities)))
     if handles:
         figure.legend(handles=handles, loc="upper center", ncol=2, handlelength=2.0, columnspacing=1.8,
                       borderaxespad=0.1, bbox_to_anchor=(0.5, 1 - head / height))
@@ -332,6 +338,9 @@ def details(series, quantities):
             sentences.append("The part of an error that is due to stopping there is its change as the iteration goes on.")
         if not all(exact):
             sentences.append("Of what has no exact answer, the relative difference from the tightest run is shown.")
+        shown = moved_by_tolerance([one for one in series if one.tolerances], quantities)
+        if same := [words for words, path in quantities if (words, path) not in shown]:
+            sentences.append(f"The same at each tolerance: {', '.join(same)}.")
     return " ".join(sentences)
 
 

@@ -1,6 +1,7 @@
 """What `slipstick study` wrote: its series, how each looks in figures, and their main quantities."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from method_figures import METHODS
 from results import Unavailable, rows, value
 from studies import PRESSURES
 
-PRESSURE, METHOD = "contact.pressure", "solver.method"
+PRESSURE, METHOD, PROGRAM = "contact.pressure", "solver.method", "solver.program"
 COLOURS = [style.BLUE, style.VERMILION, style.GREEN, style.PURPLE, style.SKY, style.BLACK]
 # Larger and hollow where points of another series lie on the same spots.
 MARKERS = [dict(marker="o"), dict(marker="s", markersize=7.5, markerfacecolor="none"), dict(marker="^"),
@@ -67,6 +68,8 @@ def word(key, chosen):
     """A varied value as people say it; numbers with their key."""
     if key in WORDS:
         return WORDS[key].get(chosen, str(chosen))
+    if key == PROGRAM:
+        return Path(chosen).stem if chosen else "slipstick’s own solver"
     return f"{key} = {chosen}"
 
 

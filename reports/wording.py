@@ -3,6 +3,8 @@
 import math
 import re
 
+from markupsafe import Markup, escape
+
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 STRESSES = (("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))
 ANGLES = (("rad", 1.0), ("mrad", 1e-3), ("µrad", 1e-6), ("nrad", 1e-9))
@@ -65,8 +67,9 @@ def quantity(number, units, digits=3):
 
 
 def typeset(plain_text):
-    """A sentence of the program as it is printed: powers, roots, numbers and apostrophes."""
+    """A sentence of the program as it is printed, in HTML: powers, roots, numbers and apostrophes."""
     for written, printed in ((r"\b(\w)\^\(1/2\)", r"√\1"), (r"\b(\w)\^\(-1/2\)", r"1/√\1"), ("'", "’")):
         plain_text = re.sub(written, printed, plain_text)
-    plain_text = re.sub(r"\^(-?\d+)", lambda power: power[1].translate(SUPERSCRIPTS), plain_text)
-    return re.sub(r"\d(\.\d+)?e[-+]\d+", lambda number: sci(float(number[0])), plain_text)
+    plain_text = re.sub(r"\^(-?\d+)(?!\d*\.\d)", lambda power: power[1].translate(SUPERSCRIPTS), plain_text)
+    plain_text = re.sub(r"\d(\.\d+)?e[-+]\d+", lambda number: sci(float(number[0])), plain_text)
+    return Markup(re.sub(r"\^(-?\d+\.\d+)", r"<sup>\1</sup>", str(escape(plain_text))))

@@ -111,15 +111,6 @@ double cells_across(const Scene& scene) {
   return 2.0 * std::sqrt(static_cast<double>((normal.pressure > 0.0).count()) / M_PI);
 }
 
-/// See PathUncertainty.
-bool depends_on_path(const Scene& scene, const Model& model) {
-  if (scene.method != Method::coulomb) return false;
-  const bool one_pressure = std::ranges::all_of(
-      scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
-  const bool similar = !model.pressure_coupling || !model.law->couples();
-  return !(one_pressure && similar && !model.forces && has_axis(scene));
-}
-
 /// The scene on few cells; none where a file of pressures fixes the grid.
 std::optional<Scene> coarse_scene(const Scene& scene) {
   if (scene.pressure == PressureModel::file) return std::nullopt;
@@ -176,6 +167,14 @@ void shorten(Scene& scene, std::size_t steps) {
 }
 
 }  // namespace
+
+bool depends_on_path(const Scene& scene, const Model& model) {
+  if (scene.method != Method::coulomb) return false;
+  const bool one_pressure = std::ranges::all_of(
+      scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
+  const bool similar = !model.pressure_coupling || !model.law->couples();
+  return !(one_pressure && similar && !model.forces && has_axis(scene));
+}
 
 std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous,
                            const StepEnd& before) {

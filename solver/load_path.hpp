@@ -20,13 +20,16 @@ namespace slipstick::solver {
 /// tangential loads; a single part brings both at once. The first step begins with its normal load.
 std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before);
 
+/// Whether the number of parts can change the answer. It cannot where a surface of revolution between similar
+/// bodies is only twisted, under one normal load: slip goes on along circles.
+bool depends_on_path(const Scene& scene, const Model& model);
+
 /// The error that the number of parts leaves at the end of each step of a scene. It is estimated on few
 /// cells, on which parts leave nearly the same errors as on many: from the same history in four times as many
 /// parts.
 class PathUncertainty {
  public:
-  /// Solves the two histories, unless the number of parts cannot matter: where a surface of revolution
-  /// between similar bodies is only twisted, under one normal load, slip goes on along circles.
+  /// Solves the two histories, unless the number of parts cannot matter.
   PathUncertainty(const Scene& scene, const Model& model);
 
   /// At the end of a step, counted from 0 over all cycles. Infinite where a coarse history broke off, or a

@@ -30,7 +30,9 @@ Json choices(const solver::Scene& scene) {
   for (const double wanted : kAsked) {
     Json& row = rows.emplace_back(Json{{"wanted", wanted}});
     try {
-      const Json plan = accuracy_plan(scene, {wanted, AccuracyOf::twist});
+      const AccuracyTarget target{wanted, AccuracyOf::twist};
+      require_reachable(scene, target);
+      const Json plan = accuracy_plan(scene, target);
       for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
         if (plan.contains(key)) row[key] = plan[key];
       }
@@ -88,7 +90,7 @@ Json error_against_time(const RunSpec& base, const solver::Scene& scene, const s
           const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";
           set_number(point, "seconds", seconds_of(result), why);
           const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
-          set_number(point, "error", std::abs(found / reference.value - 1.0),
+          set_number(point, "error", std::abs(found / reference.value - 1.0) + reference.uncertainty,
                      is_converged(result) ? "no reference is known" : why);
         });
       }
@@ -125,7 +127,8 @@ Json answers_beside(const RunSpec& base, const solver::Scene& scene, const std::
           set_number(row, "error",
                      known == nullptr
                          ? kNaN
-                         : std::abs(size_at(result, number) / number_at(*known, "reference") - 1.0),
+                         : std::abs(size_at(result, number) / number_at(*known, "reference") - 1.0) +
+                               number_at(*known, "uncertainty"),
                      is_failed(result) ? "there is no answer" : "no reference is known");
           if (row["error"].is_number()) break;
         }

@@ -11,7 +11,8 @@
 namespace slipstick::convergence {
 
 /// Time and error of each method on several meshes and to several tolerances, and the choices of --accuracy:
-/// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}.
+/// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}. An
+/// error is the distance from the reference and the reference's own uncertainty.
 /// A scene's program counts as a method, beside this program's own.
 Json error_against_time(const RunSpec& base, const solver::Scene& scene,
                         const std::vector<solver::Index>& meshes, const Reference& reference,

@@ -71,7 +71,7 @@ void add_friction_rows(const solver::FrictionLaw& law, const auto& add) {
   if (!law.map.empty()) add("Factors of the friction", law.map.filename().string());
 }
 
-Json summary(const Scene& scene, const solver::Grid& grid) {
+Json summary(const Scene& scene, const Scene& on_page, const solver::Grid& grid) {
   Json rows = Json::array();
   const auto add = [&](const std::string& words, const std::string& value) {
     rows.push_back({words, value});
@@ -90,7 +90,11 @@ Json summary(const Scene& scene, const solver::Grid& grid) {
     add("First step", load_text(scene.steps.front()));
     add("Last step", load_text(scene.steps.back()));
   }
-  add("Grid", fmt::format("{} x {} cells", grid.n1, grid.n2));
+  std::string cells = fmt::format("{} x {} cells", grid.n1, grid.n2);
+  if (scene.cells != on_page.cells) {
+    cells += fmt::format(" on this page; the scene file has {} x {}", scene.cells[0], scene.cells[1]);
+  }
+  add("Grid", cells);
   const std::string solved_by =
       scene.program.empty() ? solver::word_of(solver::kMethods, scene.method) : scene.program.string();
   add(scene.program.empty() ? "Method" : "Program",
@@ -130,12 +134,12 @@ Json gap_of_bodies(const solver::Model& model, const solver::Grid& grid) {
 
 }  // namespace
 
-Json describe(const Scene& scene, const std::filesystem::path& file) {
-  const solver::Model model = solver::make_model(scene);
+Json describe(const Scene& scene, const Scene& on_page, const std::filesystem::path& file) {
+  const solver::Model model = solver::make_model(on_page);
   const solver::Grid grid = model.grid_in_m();
   return {{"name", scene.name},
           {"text", read_text(file)},
-          {"summary", summary(scene, grid)},
+          {"summary", summary(scene, on_page, grid)},
           {"gap", gap_of_bodies(model, grid)}};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "convergence/orders/expected_order.hpp"
@@ -11,6 +12,8 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/studies/study.hpp"
+#include "solver/load_path.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -26,6 +29,9 @@ const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1
 /// Loads below this part of all that friction carries are those of rounding.
 constexpr double kRounded = 1e-9;
 
+/// The basis of an error against an exact answer.
+constexpr const char* kExact = "exact";
+
 /// A number that the page shows, where a result has it.
 struct PageNumber {
   const char* key;
@@ -39,6 +45,7 @@ constexpr PageNumber kNumbers[] = {{"twist_angle", "twist", "rad"},
                                    {"moment_limit", "limit moment", "N m"},
                                    {"contact_radius", "contact radius", "m"},
                                    {"stick_radius", "stick radius", "m"},
+                                   {"stick_ratio", "stick ratio", ""},
                                    {"peak_pressure", "highest pressure", "Pa"},
                                    {"approach", "approach", "m"},
                                    {"elastic_energy", "elastic energy", "J"},
@@ -62,7 +69,7 @@ bool is_rough(const Scene& scene) {
   });
 }
 
-/// How far a number on the finest mesh may be off, relative, and how that is known.
+/// How far the mesh may put a number on the finest mesh off, relative, and how that is known.
 struct MeshError {
   double reference = kNaN;
   double error = kNaN;
@@ -83,29 +90,38 @@ MeshError error_by_study(const Json& study, const std::string& key, double value
   return {};
 }
 
+/// What the mesh leaves open as the result states it, relative; NaN of another number than its `resolved`.
+double stated_mesh_error(const Json& result, const std::string& key) {
+  return result["resolved"].value("number", "") == key
+             ? number_at(result, "resolved.mesh") / size_at(result, key)
+             : kNaN;
+}
+
 /// study: of meshes.
 MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const Json& study,
                      const std::string& key) {
   const Json& finest = results.back();
   const double value = size_at(finest, key);
   if (const double exact = size_at(finest, "exact." + key); exact > 0.0) {
-    return {exact, value / exact - 1.0, 0.0, "exact"};
+    return {exact, value / exact - 1.0, 0.0, kExact};
   }
   if (!(value > 0.0)) return {.basis = "the value is zero, or there is none"};
   if (results.size() < 2) {
     if (finest["resolved"].value("number", "") != key)
       return {.basis = "its files have its grid: there is no other mesh"};
-    const double stated = number_at(finest, "resolved.uncertainty");
-    return {value, stated, stated, "what the mesh leaves open, as the result states"};
+    const double stated = stated_mesh_error(finest, key);
+    return {value, stated, stated, "as the result states"};
   }
   std::vector<MeshSample> samples;
   samples.reserve(results.size());
   for (const Json& result : results)
     samples.push_back({result["cell_size"][0].get<double>(), size_at(result, key)});
   if (is_rough(scene)) {
-    const double change = value / samples[samples.size() - 2].value - 1.0;
-    return {value, change, std::abs(change),
-            "change from the mesh before: finer ones see more of the surface"};
+    const double change = std::abs(value / samples[samples.size() - 2].value - 1.0);
+    const double error = std::fmax(change, stated_mesh_error(finest, key));
+    return {value, error, error,
+            error > change ? "as the result states: finer meshes see more of the surface"
+                           : "change from the mesh before: finer ones see more of the surface"};
   }
   const Limit limit = richardson_limit(samples, expected_order(key, scene).value);
   const double uncertainty = limit.uncertainty / std::abs(limit.value);
@@ -122,6 +138,44 @@ bool is_rounding(const Json& result, const std::string& key) {
   const bool no_moment = size_at(result, "moment") < kRounded * size_at(result, "moment_limit");
   if (key == "twist_angle" || key == "moment") return no_moment;
   return (key == "displacement" || key == "force") && no_force;
+}
+
+/// The stick ratio says no more than the stick radius, unless it is the one of the two with an exact answer.
+bool stands_for_radius(const Json& result, const std::string& key) {
+  return key == "stick_ratio" &&
+         !(std::isnan(size_at(result, "exact.stick_radius")) && size_at(result, "exact.stick_ratio") > 0.0);
+}
+
+/// What the length of the steps leaves open of a number, relative: 0 where it cannot matter, NaN where
+/// nothing is known. `on_path`: whether the scene's answer depends on it.
+double path_error(const Json& result, const std::string& key, bool on_path) {
+  const bool of_pressure =
+      key == "moment_limit" || key == "contact_radius" || key == "peak_pressure" || key == "approach";
+  const bool shear_moves_pressure = result.contains("turns");
+  if (!on_path || (of_pressure && !shear_moves_pressure)) return 0.0;
+  if (result.contains("program")) return kNaN;
+  return number_at(result, "resolved.paths." + key) / size_at(result, key);
+}
+
+/// The parts of an error and their sum; of an exact answer's the sum is all that is known.
+void add_error(Json& row, const MeshError& mesh, double path) {
+  const bool exact = mesh.basis == kExact;
+  const std::string kWhole = "the error against the exact answer holds all parts";
+  const std::string kNoPath =
+      "the length of the steps changes this number by an unknown amount: compare with a larger "
+      "solver.substeps";
+  std::string basis = mesh.basis;
+  if (!exact && std::isnan(path)) {
+    basis += "; " + kNoPath;
+  } else if (!exact && path > 0.0) {
+    basis = fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), basis, path);
+  }
+  row["basis"] = basis;
+  set_number(row, "reference", mesh.reference, basis);
+  set_number(row, "error", exact ? mesh.error : std::abs(mesh.error) + path, basis);
+  set_number(row, "mesh", exact ? kNaN : std::abs(mesh.error), exact ? kWhole : basis);
+  set_number(row, "path", exact ? kNaN : path, exact ? kWhole : kNoPath);
+  set_number(row, "uncertainty", exact ? 0.0 : mesh.uncertainty + path, basis);
 }
 
 }  // namespace
@@ -167,28 +221,30 @@ Json scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes
   return found;
 }
 
+std::string words_of(const std::string& number) {
+  const auto* const found = std::ranges::find(kNumbers, number, &PageNumber::key);
+  return found == std::end(kNumbers) ? number : found->words;
+}
+
 Json number_rows(const Scene& scene, const std::vector<Json>& results, const Json& study) {
+  const bool on_path = solver::depends_on_path(scene, solver::make_model(scene));
+  const Json& answer = results.back();
   Json rows = Json::array();
   for (const auto& [key, words, unit] : kNumbers) {
-    const double value = size_at(results.back(), key);
-    if (!(value > 0.0) || is_rounding(results.back(), key)) continue;
-    const MeshError found = mesh_error(scene, results, study, key);
-    Json& row = rows.emplace_back(
-        Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
-    set_number(row, "reference", found.reference, found.basis);
-    set_number(row, "error", found.error, found.basis);
-    set_number(row, "uncertainty", found.uncertainty, found.basis);
+    const double value = size_at(answer, key);
+    if (!(value > 0.0) || is_rounding(answer, key) || stands_for_radius(answer, key)) continue;
+    Json& row = rows.emplace_back(Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}});
+    add_error(row, mesh_error(scene, results, study, key), path_error(answer, key, on_path));
   }
   return rows;
 }
 
 Reference reference_of(const Json& answer, const Json& rows) {
   std::vector<std::string> keys{answer["resolved"].value("number", "")};
-  keys.insert(keys.end(), {"twist_angle", "displacement", "stick_radius", "approach"});
+  keys.insert(keys.end(), {"twist_angle", "displacement", "stick_radius", "stick_ratio", "approach"});
   for (const std::string& key : keys) {
     for (const Json& row : rows) {
-      if (row["key"] != key || !row["reference"].is_number()) continue;
-      return {key, row["reference"], number_at(row, "uncertainty")};
+      if (row["key"] == key && row["error"].is_number()) return {key, row["reference"], row["uncertainty"]};
     }
   }
   return {keys.back(), kNaN, kNaN};

@@ -13,7 +13,8 @@ namespace slipstick::convergence {
 
 /// What a scene is: {name, text, summary: [[words, value]], gap: {x1, along_1, x2, along_2}}, the gap in m
 /// along both axes of the grid through its centre; null where the bodies cannot touch.
-Json describe(const solver::Scene& scene, const std::filesystem::path& file);
+/// on_page: the scene with the cells that the page's answer has.
+Json describe(const solver::Scene& scene, const solver::Scene& on_page, const std::filesystem::path& file);
 
 /// The coarsest mesh of a study, cells along the longer side.
 inline constexpr solver::Index kFewestCells = 8;
@@ -35,14 +36,18 @@ std::vector<Json> solve_answer(const RunSpec& base, const solver::Scene& scene, 
 Json scene_studies(const RunSpec& base, const solver::Scene& scene, const Meshes& meshes,
                    const PageSize& size, const ProcessPool& pool);
 
-/// A row for each number that the answer has. study: of meshes.
+/// A row for each number that the answer has, with its error: what the mesh and the length of the steps leave
+/// open, or null where one of them is not known. study: of meshes.
 Json number_rows(const solver::Scene& scene, const std::vector<Json>& results, const Json& study);
+
+/// What a person calls a number of a page.
+std::string words_of(const std::string& number);
 
 /// The number by which answers are compared, and what it is compared with.
 struct Reference {
   std::string number;  ///< key in a result: twist_angle, displacement, moment, ...
   double value;        ///< its size, SI units; NaN: nothing is known
-  double uncertainty;  ///< relative; 0: exact
+  double uncertainty;  ///< relative, with that of the steps' length; 0: exact
 };
 
 /// That of the number which the result's uncertainty is of, or of the first of some that has one.

@@ -10,6 +10,7 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/solution.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -49,7 +50,7 @@ Finding judge_literature(const Json& all) {
       fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
                   counts["passed"].get<int>(), all["gates"].size(), counts["failed as expected"].get<int>()) +
           wrong_gates(all["gates"]),
-      all["exit_code"] == 0};
+      shown(all["exit_code"] == 0)};
 }
 
 Finding judge_gates(const Json& all) {
@@ -63,7 +64,7 @@ Finding judge_gates(const Json& all) {
     line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it",
                         (*nearest)["id"].get<std::string>(), 100.0 * (*nearest)["factor"].get<double>());
   }
-  return {"Gates", line, all["exit_code"] == 0};
+  return {"Gates", line, shown(all["exit_code"] == 0)};
 }
 
 Finding judge_known_fields(const Json& peers) {
@@ -73,9 +74,28 @@ Finding judge_known_fields(const Json& peers) {
                               peer["program"].get<std::string>(), peer["verdict"].get<std::string>());
     if (peer["verdict"] == peer["expected"]) continue;
     found.line += fmt::format(" (known to be {})", peer["expected"].get<std::string>());
-    found.holds = false;
+    found.shown = Shown::fails;
   }
   return found;
+}
+
+/// How far a number of the page may be off, and how that is known.
+std::string error_text(const Json& row) {
+  const std::string basis = row["basis"];
+  const double error = size_at(row, "error");
+  if (std::isnan(error)) return fmt::format("may be off by an unknown part ({})", basis);
+  return fmt::format("{} off by {:.1e} ({})", row["mesh"].is_null() ? "is" : "may be", error, basis);
+}
+
+/// The setting that makes the larger part of an error as small as half of what is wanted.
+std::string cure(const Json& row, double wanted) {
+  const double path = number_at(row, "path");
+  if (path > number_at(row, "mesh")) {
+    return fmt::format("; set solver.substeps {:.0f} times as high, or see what solve --accuracy {:g} takes",
+                       std::ceil(2.0 * path / wanted), wanted);
+  }
+  if (row["error"].is_null()) return "";
+  return "; take more grid.cells, and a page without --quick";
 }
 
 /// Whether two values differ by more than machines and clocks do.
@@ -122,31 +142,31 @@ Finding judge_certificate(const Json& answer) {
           fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed",
                       is_converged(answer) ? "converged" : answer["status"].get<std::string>(),
                       answer["cells"][0].get<int>(), answer["cells"][1].get<int>(), gap, allowed),
-          certified};
+          shown(certified)};
 }
 
-Finding judge_order(const Json& studies, const std::string& number) {
+Finding judge_order(const Json& studies, const std::string& number, const std::string& words) {
+  const auto open = [&](const std::string& why) {
+    return Finding{"Orders", fmt::format("not shown by the {}: {}", words, why), Shown::open};
+  };
   for (const Json& series : studies.front()["series"]) {
     for (const std::string& quantity : {number + "_error", std::string("twist_error"), number}) {
       if (!series["order"].contains(quantity) || (quantity == "twist_error" && number != "twist_angle"))
         continue;
       const Json& order = series["order"][quantity];
       const std::string verdict = order["verdict"];
-      if (!order["value"].is_number()) {
-        return {"Orders", fmt::format("none of {}: {}", quantity, order["why"].get<std::string>())};
-      }
-      const bool worse = order["expected"].is_number() && verdict == "preasymptotic" &&
-                         order["high"].get<double>() < order["expected"].get<double>() - kWorseOrder;
-      return {"Orders",
-              fmt::format("{} falls with order {:.2f}{}: {}", quantity, order["value"].get<double>(),
-                          order["expected"].is_number()
-                              ? fmt::format(", {:g} expected", order["expected"].get<double>())
-                              : "",
-                          verdict),
-              !worse};
+      const std::string why = order["why"];
+      const double expected = number_at(order, "expected");
+      const bool fitted =
+          verdict == "asymptotic" || verdict == "superconvergent" || verdict == "preasymptotic";
+      if (!fitted || std::isnan(expected)) return open(why);
+      const std::string line = fmt::format("of the {}: {}", words, why);
+      if (number_at(order, "high") < expected - kWorseOrder) return {"Orders", line, Shown::fails};
+      if (!(number_at(order, "low") >= expected - kWorseOrder)) return open(why);
+      return {"Orders", line};
     }
   }
-  return {"Orders", "no study of meshes says one"};
+  return open("there is no study of meshes with it");
 }
 
 Finding judge_hard(const Json& hard, const std::string& what) {
@@ -161,16 +181,16 @@ Finding judge_hard(const Json& hard, const std::string& what) {
                           row["reason"].get<std::string>());
     }
   }
-  return {what, line, counts["wrong"] == 0 && counts["not_converged"] == 0};
+  return {what, line, shown(counts["wrong"] == 0 && counts["not_converged"] == 0)};
 }
 
 Finding judge_check(const Json& answer, const Json& check) {
   const bool good = check["verdict"] == "good";
   const std::string why =
       fmt::format("{}: {}", check["verdict"].get<std::string>(), check["why"].get<std::string>());
-  if (is_converged(answer)) return {"Field", why, good};
+  if (is_converged(answer)) return {"Field", why, shown(good)};
   return {"Field", fmt::format("not converged: {}; it is {}", answer["message"].get<std::string>(), why),
-          false};
+          Shown::fails};
 }
 
 Finding judge_pressure(const Json& answer) {
@@ -178,7 +198,7 @@ Finding judge_pressure(const Json& answer) {
   return {"Pressure",
           fmt::format("its gap is open under {:.1e} of it, {:g} allowed; there are no tractions to judge",
                       open, kOpenUnderPressure),
-          std::abs(open) <= kOpenUnderPressure};
+          shown(std::abs(open) <= kOpenUnderPressure)};
 }
 
 Finding judge_hard_beside(const Json& hard) {
@@ -195,28 +215,30 @@ Finding judge_hard_beside(const Json& hard) {
     line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
                         beside["reason"].get<std::string>());
   }
-  return {"Hard variants", line, other == 0};
+  return {"Hard variants", line, shown(other == 0)};
 }
 
-Finding state_mesh_error(const Json& numbers, const std::string& number) {
+Finding judge_accuracy(const Json& numbers, const std::string& number) {
   for (const Json& row : numbers) {
-    if (row["key"] != number || !row["error"].is_number()) continue;
-    return {"Mesh", fmt::format("it leaves {:.1e} of the {} open ({})", std::abs(row["error"].get<double>()),
-                                row["words"].get<std::string>(), row["basis"].get<std::string>())};
+    if (row["key"] != number) continue;
+    const double error = size_at(row, "error");
+    const Shown found = error <= solver::kPoorlyResolved ? Shown::holds : Shown::open;
+    return {"Accuracy",
+            fmt::format("the {} {}{}", row["words"].get<std::string>(), error_text(row),
+                        found == Shown::holds ? "" : cure(row, solver::kPoorlyResolved)),
+            found};
   }
-  return {"Mesh", "what it leaves open is not known"};
+  return {"Accuracy", "how far the answer may be off is not known", Shown::open};
 }
 
 Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
   for (const Json& row : numbers) {
     if (row["key"] != wanted.quantity) continue;
-    const double error = row["error"].is_number() ? std::abs(row["error"].get<double>()) : kNaN;
-    return {
-        fmt::format("Error of the {}", row["words"].get<std::string>()),
-        std::isnan(error)
-            ? fmt::format("unknown ({}), {:g} wanted", row["basis"].get<std::string>(), wanted.error)
-            : fmt::format("{:.1e} ({}), {:g} wanted", error, row["basis"].get<std::string>(), wanted.error),
-        error <= wanted.error};
+    const bool holds = size_at(row, "error") <= wanted.error;
+    return {fmt::format("Error of the {}", row["words"].get<std::string>()),
+            fmt::format("it {}, {:g} wanted{}", error_text(row), wanted.error,
+                        holds ? "" : cure(row, wanted.error)),
+            shown(holds)};
   }
   std::vector<std::string> keys;
   for (const Json& row : numbers) keys.push_back(row["key"]);
@@ -232,13 +254,15 @@ std::vector<Finding> judge_validation(const Json& paper) {
 }
 
 Json headline_of(const std::vector<Finding>& findings, const Json& page) {
-  bool good = true;
+  constexpr const char* kChecks[] = {"holds", "open", "fails"};
+  constexpr const char* kVerdicts[] = {"good", "open", "bad"};
+  Shown worst = Shown::holds;
   Json lines = Json::array();
   Json checks = Json::object();
-  for (const auto& [what, line, holds] : findings) {
-    good = good && holds;
+  for (const auto& [what, line, found] : findings) {
+    worst = std::max(worst, found);
     lines.push_back({what, line});
-    checks[what] = holds ? "holds" : "fails";
+    checks[what] = kChecks[static_cast<int>(found)];
   }
   Json counts{{"checks", checks}};
   if (page.contains("hard")) counts["hard"] = page["hard"]["counts"];
@@ -254,7 +278,7 @@ Json headline_of(const std::vector<Finding>& findings, const Json& page) {
   }
   Json numbers = Json::object();
   for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
-  return {{"verdict", good ? "good" : "bad"},
+  return {{"verdict", kVerdicts[static_cast<int>(worst)]},
           {"commit", page["provenance"]["commit"]},
           {"lines", lines},
           {"numbers", numbers},
@@ -290,7 +314,15 @@ Json with_changes(Json now, const Json& before) {
 
 std::string headline_text(const Json& headline) {
   constexpr std::size_t kShownChanges = 3;
-  std::string text = headline["verdict"] == "good" ? "All is well\n" : "NOT all is well\n";
+  const std::string verdict = headline["verdict"];
+  std::string text = verdict == "good" ? "All is well\n" : "NOT all is well\n";
+  if (verdict == "open") {
+    std::vector<std::string> open;
+    for (const auto& [what, found] : headline["counts"]["checks"].items()) {
+      if (found == "open") open.push_back(what);
+    }
+    text = fmt::format("Nothing is wrong, but open: {}\n", fmt::join(open, ", "));
+  }
   const auto add = [&](const std::string& what, const std::string& line) {
     text += fmt::format("  {:<16} {}\n", what, line);
   };

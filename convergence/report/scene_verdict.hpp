@@ -8,11 +8,15 @@
 /// The verdict of a page, and what differs from the page before.
 namespace slipstick::convergence {
 
+/// open: nothing is wrong, and nothing is shown either.
+enum class Shown { holds, open, fails };
+inline Shown shown(bool holds) { return holds ? Shown::holds : Shown::fails; }
+
 /// A sentence of the verdict, and whether it holds.
 struct Finding {
   std::string what;
   std::string line;
-  bool holds = true;
+  Shown shown = Shown::holds;
 };
 
 /// Converged, and its gap within the tolerance.
@@ -24,14 +28,16 @@ Finding judge_check(const Json& answer, const Json& check);
 Finding judge_pressure(const Json& answer);
 Finding judge_hard_beside(const Json& hard);
 
-/// Without a wanted error a statement alone, of the number by which answers are compared.
-Finding state_mesh_error(const Json& numbers, const std::string& number);
+/// How far the number by which answers are compared may be off, by its mesh and by the length of its steps;
+/// open from solver::kPoorlyResolved on.
+Finding judge_accuracy(const Json& numbers, const std::string& number);
 
 /// Throws InputError for a quantity that no row of the numbers has.
 Finding judge_wanted(const WantedError& wanted, const Json& numbers);
 
-/// The order of that number in the study of meshes is no worse than expected.
-Finding judge_order(const Json& studies, const std::string& number);
+/// The order of that number in the study of meshes is no worse than expected; open where the meshes do not
+/// show it. words: for the number.
+Finding judge_order(const Json& studies, const std::string& number, const std::string& words);
 
 /// No hard case is wrong or does not converge. what: the cases, as "Hard variants".
 Finding judge_hard(const Json& hard, const std::string& what);
@@ -40,7 +46,8 @@ Finding judge_hard(const Json& hard, const std::string& what);
 /// fields of other programs are judged as they deserve.
 std::vector<Finding> judge_validation(const Json& paper);
 
-/// What a page says first: {verdict, commit, lines, numbers, counts}.
+/// What a page says first: {verdict, commit, lines, numbers, counts}. The verdict is bad where a finding
+/// fails, else open where one is open, else good.
 Json headline_of(const std::vector<Finding>& findings, const Json& page);
 
 /// Sentences on what differs from an earlier headline: none where only times do.

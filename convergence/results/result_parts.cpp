@@ -93,8 +93,9 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
            "steps do not carry these loads; compare with a larger solver.substeps";
   }
   if (path > mesh) {
-    return fmt::format("the steps are too long, so the contact's motion is {}; take more solver.substeps",
-                       uncertain);
+    return fmt::format(
+        "the loads are brought in too few parts, so the contact's motion is {}; set solver.substeps higher{}",
+        uncertain, resolution.number == &solver::Quantities::twist ? ", or use --accuracy" : "");
   }
   return fmt::format("little is left beside what the steps before have changed, so it is {}; take more cells",
                      uncertain);
@@ -114,6 +115,9 @@ Json resolution_json(const solver::Resolution& resolution) {
   set_number(json, "absolute", resolution.absolute, unknown);
   set_number(json, "mesh", resolution.mesh.*resolution.number, unknown);
   set_number(json, "path", resolution.path.*resolution.number, unknown);
+  for (const auto number : solver::kQuantities) {
+    set_number(json["paths"], name_of(number), resolution.path.*number, unknown);
+  }
   if (!(resolution.uncertainty <= solver::kPoorlyResolved)) json["warning"] = poorly_resolved(resolution);
   return json;
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "convergence/results/output.hpp"
@@ -20,7 +21,7 @@ void Progress::finished(const std::string& label, double weight) {
   said_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   std::cerr << fmt::format("{}[{}/{}] {}, about {:.0f} s left{}", terminal ? "\r\033[K" : "", done_, total_,
-                           plain_text(label), spent_ > 0.0 ? seconds / spent_ * left_ : 0.0,
+                           plain_text(label), spent_ > 0.0 ? seconds / spent_ * std::max(left_, 0.0) : 0.0,
                            terminal && !last ? "" : "\n");
 }
 

@@ -50,11 +50,13 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
 }
 
 /// The part of a target that the length of steps may take, and the most that a mesh leaves them; the largest
-/// number of their parts; and how often that number is raised on few cells.
+/// number of their parts; how often that number is raised on few cells, and up to so many parts of all steps:
+/// from there on their error is taken to fall like one over their number.
 constexpr double kPathPart = 0.4;
 constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
+constexpr std::size_t kPathTrialParts = 300;
 
 /// The relative uncertainty of the wanted number that the length of steps leaves.
 double path_of(const solver::Solution& solution) {
@@ -74,6 +76,7 @@ void put_uncertainty(Json& result, double mesh, double path) {
   resolved["absolute"] = (mesh + path) * value;
   resolved["mesh"] = mesh * value;
   resolved["path"] = path * value;
+  resolved["paths"][resolved["number"].get<std::string>()] = path * value;
   resolved.erase("warning");
 }
 
@@ -91,8 +94,10 @@ void make_more_parts(Scene& scene, AccuracyTarget& target) {
 Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
   for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
     coarse.substeps = scene.substeps;
+    if (trial > 0 && steps * static_cast<std::size_t>(scene.substeps) > kPathTrialParts) return scene;
     double path = 0.0;
     try {
       path = path_of(solver::solve(coarse));

@@ -52,6 +52,8 @@ constexpr double kLoosest = 1e-4;
 /// on that, below this width over the contact's radius, and much finer grids follow.
 constexpr solver::Index kFormCells = 40;
 constexpr solver::Index kFinerFormCells = 160;
+/// Parts of all steps that are solved on it; a longer history takes fewer for each step.
+constexpr long kFormParts = 300;
 constexpr double kNarrowRing = 0.06;
 /// The smallest stick radius in cells by which grids are spread, so that none is much coarser than the
 /// others.
@@ -106,7 +108,10 @@ double slenderness(const solver::Solution& solution) {
 ContactForm form_on(const Scene& scene, solver::Index cells) {
   ContactForm form;
   try {
-    const solver::Solution coarse = solver::solve(with_cells(scene, cells));
+    Scene few = with_cells(scene, cells);
+    const long steps = static_cast<long>(few.steps.size()) * few.cycles;
+    few.substeps = static_cast<int>(std::clamp<long>(kFormParts / steps, 1, few.substeps));
+    const solver::Solution coarse = solver::solve(few);
     const double ratio = coarse.stick_radius / coarse.contact_radius;
     if (ratio >= 0.0 && ratio <= 1.0) form.stick_ratio = ratio;
     const double slender = slenderness(coarse);

@@ -268,6 +268,11 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   if (!request.keep.empty()) return serve_runs(request.keep, request.memory_limit);
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
+  if (one_file_a_step(request.figure)) {
+    throw solver::InputError("--figure " + request.figure,
+                             "allowed: a name without {step}: the figure is that of the last step (--fields "
+                             "takes {step})");
+  }
   const solver::Scene scene = read_scene(request);
   if (!scene.program.empty()) require_for_programs(request, scene);
   if (request.processes.several()) require_shared_by_ranks(request, scene);

@@ -183,11 +183,12 @@ std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
 
 std::string verdict(double inputs, const Json& output, bool exact) {
   if (exact) return "the answer is exact: only better inputs tell more";
-  if (output["numerical"].is_null()) return "the mesh's error is not known";
-  const double mesh = output["numerical"].get<double>();
-  const std::string size = "the mesh " + percent(mesh);
-  if (mesh <= kNegligible * inputs) return size + ": refinement would not reduce the uncertainty";
-  if (inputs <= kNegligible * mesh) return size + ": a finer mesh matters more than better inputs";
+  if (output["numerical"].is_null()) return "the error of mesh and steps is not known";
+  const double numerical = output["numerical"].get<double>();
+  const std::string size = "mesh and steps leave " + percent(numerical);
+  if (numerical <= kNegligible * inputs) return size + ": refinement would not reduce the uncertainty";
+  if (inputs <= kNegligible * numerical)
+    return size + ": a finer mesh, or shorter steps, matter more than better inputs";
   return size + ": both matter";
 }
 

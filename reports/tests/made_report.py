@@ -141,8 +141,9 @@ def small_paper():
 
 
 def number(key, words, unit, found, error, basis="exact"):
+    parts = {"mesh": None, "path": None} if basis == "exact" else {"mesh": error, "path": None if error is None else 0.0}
     return {"key": key, "words": words, "unit": unit, "value": found, "reference": found, "error": error, "uncertainty": 0.0,
-            "basis": basis}
+            "basis": basis} | parts
 
 
 def small_page():

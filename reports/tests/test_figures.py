@@ -11,7 +11,37 @@ import hard_cases
 import method_figures
 import peers_figure
 import results
+import scene_figures
 from wording import sci
+
+
+def history(*moments, force=1e-16):
+    """A page with the steps of a torsion whose forces are those of rounding."""
+    steps = [{"twist_angle": m + m**3, "moment": m, "displacement": [0.0, 1e-22 * k], "force": [force * k, 0.0]}
+             for k, m in enumerate(moments)]
+    return {"answer": {"steps": steps, "contact_radius": 1e-3, "moment_limit": 1.0, "friction_force": 100.0,
+                       "history": {"dissipated": 1e-6}}}
+
+
+class SceneFigures(unittest.TestCase):
+    def test_rounding_is_no_panel_of_a_history(self):
+        self.assertEqual(len(scene_figures.loop(history(0.2, 0.5, 0.1), None).figure.axes), 1)
+
+    def test_a_step_for_each_reversal_shows_no_loop(self):
+        few = scene_figures.loop(history(0.8, -0.8, 0.8), None)
+        self.assertEqual(few.figure.axes[0].lines[0].get_linestyle(), ":")
+        self.assertNotIn("What lies within a closed loop is the energy", few.details)
+        turns = [0.2, 0.4, 0.6, 0.8, 0.4, 0.0, -0.4, -0.8, -0.4, 0.0, 0.4, 0.8]
+        many = scene_figures.loop(history(*turns), None)
+        self.assertEqual(many.figure.axes[0].lines[0].get_linestyle(), "-")
+        self.assertIn("What lies within a closed loop is the energy", many.details)
+
+    def test_the_time_is_that_of_an_error_that_is_known(self):
+        """Tighter tolerances gain nothing below what is known of the reference; the quickest such solve is named."""
+        points = [{"method": "coulomb", "cells": 8, "tolerance": t, "seconds": s, "error": 4e-3 + e}
+                  for t, s, e in ((1e-3, 0.1, 1e-2), (1e-6, 0.2, 3e-5), (1e-9, 0.5, 3e-10))]
+        entry = scene_figures.cost({"cost": {"number": "twist_angle", "reference_uncertainty": 4e-3, "points": points}}, None)
+        self.assertIn(f"An error of {sci(4e-3)} in the twist takes 0.2 s", entry.message)
 
 
 class OneFigure(Folder):

@@ -79,7 +79,7 @@ class WholePage(unittest.TestCase):
         first = self.page[self.page.index("<main"):self.page.index("<section")]
         for words in ("✓ All is well", "<strong>Gates:</strong> 1 of 1 pass", "a &lt; b", "page of commit 0123456789abcdef:",
                       "hard certified: 2 before, 1 now", "<dd>0.3\u00a0%</dd><dt>error of the twist",
-                      "<dd>2\u00a0%</dd><dt>what the mesh leaves open of the stick radius", "<dd>2.0×10⁻⁹</dd>", "<dd>0.125\u00a0s</dd>",
+                      "<dd>2\u00a0%</dd><dt>what mesh and steps leave open of the stick radius", "<dd>2.0×10⁻⁹</dd>", "<dd>0.125\u00a0s</dd>",
                       "16×16 cells, M/M<sub>lim</sub>&nbsp;=&nbsp;0.9", 'id="twist"'):
             self.assertIn(words, first)
 
@@ -94,6 +94,17 @@ class WholePage(unittest.TestCase):
         self.assertNotIn("All is well</p>", page.replace("Not all is well", ""))
         self.assertIn("the first page in its folder", page)
         self.assertIn("✗ Hard:", page)
+
+    def test_what_is_open_does_not_look_well(self):
+        page = small_page()
+        page["headline"].update(verdict="open", lines=[["Gates", "1 of 1"], ["Orders", "fitted with h^0.63 and h^2 > 0"]],
+                                counts={"checks": {"Gates": "holds", "Orders": "open"}})
+        write_data(self.output / "open", page)
+        with only():
+            run_render(self.output / "open", save=save_nothing)
+        page = (self.output / "open" / "index.html").read_text(encoding="utf-8")
+        self.assertNotIn("All is well", page)
+        self.assertIn("○ Orders:</strong> fitted with h<sup>0.63</sup> and h² &gt; 0", page)
 
     def test_each_figure_stands_in_the_page_and_is_named(self):
         drawn = re.findall(r'<svg role="img" aria-label="([^"]+)" viewBox', self.page)
@@ -193,8 +204,8 @@ class WholePage(unittest.TestCase):
             self.assertNotIn("<script", figure.read_text(encoding="utf-8"))
 
     def test_tables_of_the_answer(self):
-        self.assertEqual(self.rows("numbers")[1], ["twist", "1.25 mrad", "1.25 mrad", "0.3\u00a0%", "5\u00a0%", "exact"])
-        self.assertEqual(self.rows("numbers")[2], ["moment", "2 µN m", "2 µN m", "–", "–", "no mesh"])
+        self.assertEqual(self.rows("numbers")[1], ["twist", "1.25 mrad", "1.25 mrad", "0.3\u00a0%", "–", "–", "5\u00a0%", "exact"])
+        self.assertEqual(self.rows("numbers")[2], ["moment", "2 µN m", "2 µN m", "–", "–", "–", "–", "no mesh"])
         self.assertEqual(self.rows("choices")[1:], [["1.0×10⁻²", "16 × 8, the mean of 4 grids", "1.0×10⁻³", "0.01", ""],
                                                     ["1.0×10⁻³", "–", "–", "–", "too &lt;fine&gt;"]])
         self.assertEqual(self.rows("digits")[1:], [["twist", "12.3", "11.9 to 12.7"]])

@@ -91,6 +91,13 @@ class Names(Figure):
         self.assertNotIn("<script", content)
 
 
+    def test_the_last_step_is_called_the_last(self):
+        for names, words in ((["1", "2"] * 3, "end of step 6 of 6"), (["a push", "and a push"], "end of step 2 of 2, “and a push”")):
+            self.write(*disc(9, 5), changes={"steps": [{"name": name} for name in names]})
+            parts = solve_figure.details(self.solved()).replace("\N{NO-BREAK SPACE}", " ").split("  ·  ")
+            self.assertIn(words, parts)
+
+
 class WhatItShows(Figure):
     def test_cells_stand_where_they_are(self):
         self.write(*disc(9, 5, x1=1e-3, x2=-4e-3), pressure=1e6 * (1.0 + np.arange(disc(9, 5)[0].size)))

@@ -277,13 +277,15 @@ class Tolerances(unittest.TestCase):
                          ["relative difference from the tightest run"])
         self.assertIn("no exact answer, the relative difference from the tightest run", entry.details)
 
-    def test_what_no_tolerance_changes_is_drawn(self):
+    def test_what_no_tolerance_changes_has_no_panel(self):
         content = tolerance_study()
         for one in content["series"].values():
             one["order"]["stick_radius"] = order(basis="extrapolated")
             for row in one["tolerances"]:
                 row["iteration"]["stick_radius"] = 0.0
-        style.draw(study_figure.draw(content).figure, ".svg")
+        entry = study_figure.draw(content)
+        self.assertEqual(len(axes_of(entry.figure)), 3)
+        self.assertIn("The same at each tolerance: stick radius.", entry.details)
 
     def test_the_finest_mesh_is_shown_alone(self):
         content = tolerance_study()
@@ -342,6 +344,12 @@ class Words(unittest.TestCase):
     def test_typeset(self):
         self.assertEqual(typeset("off by h^(1/2), then h^2, like d^(-1/2); it's 8.4e-06"),
                          "off by √h, then h², like 1/√d; it’s 8.4×10⁻⁶")
+        self.assertEqual(typeset("h^0.63 & h^-1.5 and h^12"), "h<sup>0.63</sup> &amp; h<sup>-1.5</sup> and h¹²")
+
+    def test_an_empty_program_is_named(self):
+        words = [study_result.word("solver.program", chosen) for chosen in ("", "folder/mine.toml")]
+        self.assertEqual(words[1], "mine")
+        self.assertNotIn("=", words[0])
 
 
 class Script(Folder):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
@@ -117,6 +118,68 @@ TEST(HeadlineChanges, StayWhereNothingMoreHasChanged) {
   const Json again = with_changes(headline(later, 1e-5, "def"), second);
   EXPECT_EQ(again["since"], "abc");
   EXPECT_EQ(again["changes"], second["changes"]);
+}
+
+/// A study of meshes with such an order of the twist.
+Json study_with(const char* verdict, double low, double high, const Json& expected = 2.0) {
+  Json order{{"verdict", verdict}, {"low", low}, {"high", high}, {"expected", expected}, {"why", "so"}};
+  order["value"] = 0.5 * (low + high);
+  return Json::array({Json{{"series", {{"one", {{"order", {{"twist_angle", order}}}}}}}}});
+}
+
+Shown order_of(const Json& studies) { return judge_order(studies, "twist_angle", "twist").shown; }
+
+/// An order counts where its interval lies no lower than expected; one that could be anything shows nothing.
+TEST(Order, CountsOnlyWhereItIsShown) {
+  EXPECT_EQ(order_of(study_with("asymptotic", 1.9, 2.1)), Shown::holds);
+  EXPECT_EQ(order_of(study_with("superconvergent", 2.4, 2.6)), Shown::holds);
+  EXPECT_EQ(order_of(study_with("preasymptotic", 1.2, 1.6)), Shown::fails);
+  EXPECT_EQ(order_of(study_with("preasymptotic", 0.5, 3.0)), Shown::open);
+  for (const char* verdict : {"oscillatory", "too_few", "floor"}) {
+    EXPECT_EQ(order_of(study_with(verdict, -1.7, 16.0)), Shown::open) << verdict;
+  }
+  EXPECT_EQ(order_of(study_with("preasymptotic", 1.9, 2.1, nullptr)), Shown::open) << "none is expected";
+  EXPECT_EQ(judge_order(study_with("asymptotic", 1.9, 2.1), "stick_radius", "stick radius").shown,
+            Shown::open);
+}
+
+/// A number of a page with an error of so much by the mesh and by the steps; NaN: not known.
+Json numbers_with(double mesh, double path) {
+  Json row{{"key", "twist_angle"}, {"words", "twist"}, {"basis", "so"}};
+  set_number(row, "mesh", mesh, "so");
+  set_number(row, "path", path, "so");
+  set_number(row, "error", mesh + path, "so");
+  return Json::array({row});
+}
+
+/// Mesh and steps count together; an unknown error is never within a wanted one.
+TEST(Accuracy, IsThatOfMeshAndSteps) {
+  const auto wanted = [](const Json& numbers, double error) {
+    return judge_wanted({"twist_angle", error}, numbers);
+  };
+  EXPECT_EQ(wanted(numbers_with(4e-3, 5e-3), 1e-2).shown, Shown::holds);
+  EXPECT_EQ(wanted(numbers_with(4e-3, 9e-3), 1e-2).shown, Shown::fails);
+  EXPECT_NE(wanted(numbers_with(4e-3, 9e-3), 1e-2).line.find("solver.substeps 2 times"), std::string::npos);
+  EXPECT_NE(wanted(numbers_with(4e-2, 9e-3), 1e-2).line.find("grid.cells"), std::string::npos);
+  EXPECT_EQ(wanted(numbers_with(4e-3, kNaN), 0.5).shown, Shown::fails);
+  EXPECT_EQ(judge_accuracy(numbers_with(4e-3, 9e-3), "twist_angle").shown, Shown::holds);
+  EXPECT_EQ(judge_accuracy(numbers_with(4e-3, 1.2), "twist_angle").shown, Shown::open);
+  EXPECT_EQ(judge_accuracy(numbers_with(4e-3, kNaN), "twist_angle").shown, Shown::open);
+  EXPECT_EQ(judge_accuracy(numbers_with(4e-3, 0.0), "moment").shown, Shown::open);
+}
+
+/// Something open is not wrong, and not all is well.
+TEST(Headline, IsOpenWhereSomethingIsNotShown) {
+  Json page;
+  page["provenance"]["commit"] = "abc";
+  page["numbers"] = Json::array();
+  const auto verdict = [&](std::vector<Finding> findings) {
+    return with_changes(headline_of(findings, page), nullptr);
+  };
+  const Json open = verdict({{"A", "a"}, {"B", "b", Shown::open}});
+  EXPECT_EQ(open["verdict"], "open");
+  EXPECT_EQ(headline_text(open).find("All is well"), std::string::npos);
+  EXPECT_EQ(verdict({{"A", "a", Shown::fails}, {"B", "b", Shown::open}})["verdict"], "bad");
 }
 
 TEST(HeadlineText, SaysTheVerdictAndAFewChanges) {
