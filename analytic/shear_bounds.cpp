@@ -46,8 +46,10 @@ double stick_traction_of(const Disc& disc, StickRadius c, double r, double inwar
 class ConstantBound final : public Profile {
  public:
   ConstantBound()
-      : Profile(
-            {.name = "constant", .reference_pressure = "the bound", .load = pi, .moment_limit = 2.0 / 3}) {}
+      : Profile({.name = "constant",
+                 .reference_pressure = "constant bound",
+                 .load = pi,
+                 .moment_limit = 2.0 / 3}) {}
 
   double pressure(double) const override { return 1; }
   double twist_integral(StickRadius c) const override { return std::asinh(disc(c).root / c.ratio); }

@@ -8,7 +8,7 @@ import results
 from method_figures import METHODS
 from scene_figures import MOTIONS
 from tables import Table
-from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, percent, plain, quantity, sci, seconds, typeset
+from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, law, percent, plain, quantity, sci, seconds, typeset
 
 UNITS = {"m": LENGTHS, "Pa": STRESSES, "rad": ANGLES, "N m": MOMENTS, "J": ENERGIES}
 
@@ -49,7 +49,7 @@ def remembered(page):
     tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'what mesh and steps leave open'} of the {row['words']}")
              for row in shown]
     if gap is not None:
-        tiles.append((sci(gap), "gap in Coulomb’s law, over the energy"))
+        tiles.append((sci(gap), f"gap in {law(answer)}, over the energy"))
     tiles.append((f"{seconds(time)}\N{NO-BREAK SPACE}s", "time of the solve"))
     load = Markup(", M/M<sub>lim</sub>&nbsp;=&nbsp;{}").format(plain(answer["moment_ratio"])) if answer.get("moment_ratio") else ""
     return tiles, Markup("{} cells{}").format("×".join(map(str, answer["cells"])), load)

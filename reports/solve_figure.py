@@ -18,7 +18,7 @@ from matplotlib.figure import Figure  # noqa: E402
 import style  # noqa: E402
 from cells import Cells  # noqa: E402
 from results import InputError, Unavailable, load, number, reason, text, value  # noqa: E402
-from wording import ANGLES, LENGTHS, STRESSES, percent, plain, quantity, sci, unit_for  # noqa: E402
+from wording import ANGLES, LENGTHS, STRESSES, law, percent, plain, quantity, sci, unit_for  # noqa: E402
 
 WIDE = 1.7  # width over height of the contact, from which on its panels stand one above the other
 SIDES = (0.35, 6.0)  # least and largest width over height of a panel; white space makes up for the rest
@@ -169,7 +169,8 @@ def details(solved):
     elif value(result, "certificate.gap") is None:
         parts.append("no certificate: " + reason(result, "certificate.gap"))
     else:
-        parts.append(f"Coulomb’s law holds to gap/energy = {sci(number(result, 'certificate.gap'))}")
+        words = f"{law(result)} holds to gap/energy = {sci(number(result, 'certificate.gap'))}"
+        parts.append(words[0].upper() + words[1:])
     return "  ·  ".join(part.replace(" ", "\N{NO-BREAK SPACE}") for part in parts)
 
 

@@ -289,7 +289,7 @@ def message(series, quantities):
         sentences += dominance(study_result.budget_series(series, quantities[0][1]), *quantities[0])
     stalled = [one for one in series if one.tolerances and _best(one, "certificate.gap") > 10 * _tightest(one)]
     for one in stalled:
-        sentences.append(f"With {one.label}, Coulomb’s law holds to a gap of {sci(_best(one, 'certificate.gap'))} at best, "
+        sentences.append(f"With {one.label}, the law of friction holds to a gap of {sci(_best(one, 'certificate.gap'))} at best, "
                          f"though its own test reads {sci(_best(one, 'change'))}.")
     if not stalled and any(one.tolerances for one in series):
         sentences.append("Every tolerance that was asked for is reached.")

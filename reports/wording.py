@@ -14,6 +14,15 @@ ENERGIES = (("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+LAWS = {"coulomb": "Coulomb’s law", "tresca": "Tresca’s law", "capped": "the capped law of friction",
+        "power": "the power law of friction"}
+
+
+def law(result):
+    """The law of friction of a result, which leaves out Coulomb's."""
+    return LAWS[result.get("friction_law", "coulomb")]
+
+
 def sci(number):
     """2.1×10⁻⁶; plain 0 for zero; NaN stands for a number that was null."""
     if math.isnan(number):

@@ -201,11 +201,11 @@ std::string certificate_text(const Json& r) {
   const Json& certificate = r["certificate"];
   const Json& direction = r["slip_direction"];
   return text_line("certificate",
-                   fmt::format("moment off by {}, |q| above mu p by {}", number_text(certificate["moment"]),
-                               number_text(certificate["friction_bound"]))) +
+                   fmt::format("moment off by {}, |q| above {} by {}", number_text(certificate["moment"]),
+                               bound_text(r), number_text(certificate["friction_bound"]))) +
          text_line("slip direction",
-                   fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
-                               number_text(direction["mean"]), number_text(direction["max"])));
+                   fmt::format("{} degrees off in the mean, {} at most ({})", number_text(direction["mean"]),
+                               number_text(direction["max"]), right_direction_text(r)));
 }
 
 }  // namespace
@@ -219,6 +219,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   Json json;
   json["name"] = scene.name;
   json["field"] = file.string();
+  if (!scene.friction.is_coulomb()) json["friction_law"] = to_string(scene.friction.kind);
   json["verdict"] = good ? "good" : "bad";
   json["headline"] = headline(e, verdict, options);
   json["details"] = verdict.details;
@@ -226,7 +227,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   json["pressure_given"] = options.pressure_given;
   json["within_mesh"] = verdict.within_mesh();
   json["discrete"]["holds"] = verdict.discrete.holds();
-  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds mu p: there is no gap");
+  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds its bound: there is no gap");
   set_number(json["discrete"], "allowed", verdict.discrete.allowed, kBroken);
   add_field(json, e);
   add_state(json, e, stick);

@@ -78,7 +78,14 @@ std::optional<OtherFriction> other_law(const GivenContact& contact, const RightA
       factor * unit};
 }
 
+bool is_above_limit(double factor) { return !(factor > 1.0 - kBelowLimit); }
+
 }  // namespace
+
+double solved_multiple(double factor) {
+  if (is_above_limit(factor)) return kScaledLoads * factor;
+  return factor > 1.0 + kBelowLimit ? 1.0 : (1.0 - kBelowLimit) * factor;
+}
 
 void scale_loads(solver::TangentialProblem& problem, double factor) {
   if (problem.moment) *problem.moment *= factor;
@@ -98,14 +105,13 @@ RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& l
   const Grid& grid = contact.grid;
   solver::TangentialProblem problem = own_problem(contact, load);
   const double factor = solver::limit_of(problem, grid).factor;
-  const bool scaled = !(factor > 1.0);
-  if (scaled) scale_loads(problem, kScaledLoads * factor);
+  scale_loads(problem, solved_multiple(factor));
   const solver::TangentialSolution solution = solve_problem(contact, grid, problem);
   return {.traction = solution.traction,
           .twist = solution.twist,
           .displacement = {solution.displacement[0] + solution.twist * contact.centre[1],
                            solution.displacement[1] - solution.twist * contact.centre[0]},
-          .scaled = scaled};
+          .scaled = is_above_limit(factor)};
 }
 
 State find_state(const GivenContact& c, const solver::Step& load, std::optional<double> twist) {

@@ -24,6 +24,13 @@ struct RightAnswer {
   bool scaled;  ///< friction cannot carry the own loads with this pressure: they are scaled to kScaledLoads
 };
 inline constexpr double kScaledLoads = 0.9;  ///< of the limit load: near it, and clear of gross slip
+/// Part of the limit load by which loads have to be below it to be solved. A field that slips everywhere
+/// carries the limit up to rounding.
+inline constexpr double kBelowLimit = 1e-8;
+
+/// The multiple of loads that is solved, where a contact can carry `factor` times them: 1, unless they are
+/// above kBelowLimit or less from the limit. Above the limit it is kScaledLoads of it.
+double solved_multiple(double factor);
 
 /// Throws std::runtime_error where the solve gets nowhere near kIterationGap.
 RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load);

@@ -86,8 +86,7 @@ solver::TangentialSolution solve_finer(const GivenContact& contact, const solver
   problem.initial_displacement = pressure_displacement(contact, fine, pressure);
   scale_loads(problem, kChildrenOfCell);
   const double limit = solver::limit_of(problem, fine).factor;
-  const double wanted = own > 1.0 ? own : 1.0 / kScaledLoads;
-  if (std::isfinite(limit)) scale_loads(problem, limit / wanted);
+  if (std::isfinite(limit)) scale_loads(problem, solved_multiple(own) * limit / own);
   return solve_problem(contact, fine, problem);
 }
 

@@ -110,6 +110,7 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
   if (const auto error = moment_error(e)) {
     Judged moment = judge_error("the moment", "moment_error", *error, allowed.moment);
     moment.right = "the moment is right";
+    if (!(e.stick > 0.0).any()) moment.wrong += ": all of the contact slips, and friction carries no more";
     judged.push_back(moment);
   }
   judged.push_back({"force", e.certificate.force, allowed.force, "",
@@ -120,8 +121,8 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
 /// Whether the scene has no tangential force and imposes no displacement.
 bool is_torsion(const solver::Scene& scene) { return !solver::brings_translation(scene.steps.front()); }
 
-/// Judges motion and tractions. Where Coulomb's law is broken, an inferred twist means little: no sentence
-/// mentions it.
+/// Judges motion and tractions. Where the law of friction is broken, an inferred twist means little: no
+/// sentence mentions it.
 void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
   if (e.reference.right.scaled) return;  // the right motion and tractions are those of other loads
   const bool torsion = is_torsion(e.scene);
@@ -141,21 +142,25 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
                           allowed.traction_cells));
 }
 
-void judge_coulomb(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
-  judged.push_back(judge_error("|q|/p in the slip ring", "friction", e.deviation.friction, allowed.friction));
+void judge_friction(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
+  const solver::FrictionKind kind = e.scene.friction.kind;
+  const std::string law = solver::law_text(kind);
+  judged.push_back(judge_error(
+      e.scene.friction.is_coulomb() ? "|q|/p in the slip ring" : "|q| over its bound in the slip ring",
+      "friction", e.deviation.friction, allowed.friction));
   const double excess = friction_excess(e);
-  judged.push_back(
-      {"friction_bound", excess, allowed.friction_bound, "",
-       fmt::format("|q| exceeds mu p by {}{}", percent(excess), allowed_text(allowed.friction_bound))});
+  judged.push_back({"friction_bound", excess, allowed.friction_bound, "",
+                    fmt::format("|q| exceeds {} by {}{}", solver::bound_text(kind), percent(excess),
+                                allowed_text(allowed.friction_bound))});
   const bool within_friction = judged.back().holds();
   judged.push_back({"slip_direction", e.direction.mean, allowed.direction, "",
                     fmt::format("slip is not opposed to traction: {:.2g} degrees off in the mean (allowed: "
                                 "{:.2g})",
                                 e.direction.mean, allowed.direction)});
   if (!within_friction) return;  // the gap is a sum of positive parts only within friction
-  judged.push_back({"gap", e.deviation.gap, allowed.gap, "Coulomb's law holds",
-                    fmt::format("Coulomb's law is broken: the gap is {} of the energy{}",
-                                percent(e.deviation.gap), allowed_text(allowed.gap))});
+  judged.push_back({"gap", e.deviation.gap, allowed.gap, law + " holds",
+                    fmt::format("{} is broken: the gap is {} of the energy{}", law, percent(e.deviation.gap),
+                                allowed_text(allowed.gap))});
 }
 
 /// Judges whether the field solves the problem of its own grid, with constant tractions in each cell.
@@ -264,7 +269,7 @@ std::string details_of(const std::vector<Judged>& judged, const Judged& discrete
   const bool lawful = holds(judged, "slip_direction") && holds(judged, "gap") && holds(judged, "tractions") &&
                       holds(judged, "friction");
   for (const Judged& item : judged) {
-    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // "Coulomb's law holds" would mislead
+    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // that the law holds would mislead
     const std::string& text = item.holds() ? item.right : item.wrong;
     if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
   }
@@ -302,7 +307,7 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   judge_pressure(judged, e, allowed);
   judge_loads(judged, e, allowed);
   std::vector<Judged> law;
-  judge_coulomb(law, e, allowed);
+  judge_friction(law, e, allowed);
   const bool lawful = all_hold(law);
   // Friction comes first, then motion and tractions, which follow from it; slip direction and gap come last.
   const auto follows = law.begin() + 2;

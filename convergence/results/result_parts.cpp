@@ -55,6 +55,25 @@ void add_friction(Json& json, const solver::FrictionLaw& law, double force) {
   set_number(json, "friction_force", force, "the solve broke down");
 }
 
+namespace {
+
+solver::FrictionKind law_of(const Json& result) {
+  const std::string word = result.value("friction_law", "coulomb");
+  using enum solver::FrictionKind;
+  for (const auto kind : {tresca, capped, power}) {
+    if (word == to_string(kind)) return kind;
+  }
+  return coulomb;
+}
+
+}  // namespace
+
+std::string bound_text(const Json& result) { return solver::bound_text(law_of(result)); }
+
+std::string right_direction_text(const Json& result) {
+  return law_of(result) == solver::FrictionKind::coulomb ? "Coulomb: 0" : "right: 0";
+}
+
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason) {
   Json json;
   set_number(json, "gap", certificate.gap, reason);

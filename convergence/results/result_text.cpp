@@ -224,16 +224,17 @@ std::string solve_text(const Json& r) {
   text += status_text(r) + state_text(r) + limit_text(r) + coupling_text(r);
   text += exact_answer_text(r);
   text += text_line("certificate",
-                    fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
+                    fmt::format("gap/energy {}, moment off by {}, |q| above {} by {}",
                                 number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),
-                                number_text(r["certificate"]["friction_bound"])));
+                                bound_text(r), number_text(r["certificate"]["friction_bound"])));
   text += energy_text(r);
   const Json& direction = r["slip_direction"];
-  text += text_line("slip direction",
-                    direction.value("mean_reason", "") == kNoSlip
-                        ? kNoSlip
-                        : fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
-                                      number_text(direction["mean"]), number_text(direction["max"])));
+  text +=
+      text_line("slip direction", direction.value("mean_reason", "") == kNoSlip
+                                      ? kNoSlip
+                                      : fmt::format("{} degrees off in the mean, {} at most ({})",
+                                                    number_text(direction["mean"]),
+                                                    number_text(direction["max"]), right_direction_text(r)));
   text += resolution_text(r);
   text += model_text(r);
   return r.contains("steps") ? text + steps_text(r) : text;

@@ -297,7 +297,7 @@ class Tolerances(unittest.TestCase):
 
     def test_a_gap_that_stays_is_named(self):
         message = study_figure.draw(tolerance_study()).message
-        self.assertEqual(message, "With the paper’s method, Coulomb’s law holds to a gap of 1.0×10⁻⁴ at best, though its "
+        self.assertEqual(message, "With the paper’s method, the law of friction holds to a gap of 1.0×10⁻⁴ at best, though its "
                                   "own test reads 1.0×10⁻⁶.")
         content = tolerance_study()
         del content["series"]["paper"]

@@ -123,7 +123,7 @@ std::string beyond(const Certificate& certificate, const CertificateBounds& boun
     double bound;
   } members[] = {{"the moment's error", certificate.moment, bounds.moment},
                  {"the force's error", certificate.force, bounds.force},
-                 {"|q| above mu p", certificate.friction_bound, bounds.friction_bound}};
+                 {"|q| above its bound", certificate.friction_bound, bounds.friction_bound}};
   for (const auto& [name, value, bound] : members) {
     if (!(value <= bound)) return fmt::format("{} is {:.3g}, allowed: {:.3g}", name, value, bound);
   }

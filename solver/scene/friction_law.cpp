@@ -13,6 +13,34 @@ namespace slipstick::solver {
 
 using Eigen::ArrayXd;
 
+std::string law_text(FrictionKind kind) {
+  switch (kind) {
+    case FrictionKind::coulomb:
+      return "Coulomb's law";
+    case FrictionKind::tresca:
+      return "Tresca's law";
+    case FrictionKind::capped:
+      return "the capped law of friction";
+    case FrictionKind::power:
+      return "the power law of friction";
+  }
+  return "";
+}
+
+std::string bound_text(FrictionKind kind) {
+  switch (kind) {
+    case FrictionKind::coulomb:
+      return "mu p";
+    case FrictionKind::tresca:
+      return "the shear strength";
+    case FrictionKind::capped:
+      return "mu p or the shear strength";
+    case FrictionKind::power:
+      return "k p^n";
+  }
+  return "";
+}
+
 double FrictionLaw::bound(double pressure) const {
   if (!(pressure > 0.0)) return 0.0;
   switch (kind) {

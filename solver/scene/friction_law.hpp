@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "solver/grid/grid.hpp"
 
@@ -12,6 +13,10 @@ namespace slipstick::solver {
 /// How the shear that friction carries follows from the pressure p of a cell: mu p; a strength wherever there
 /// is pressure; the lesser of the two; k p^n.
 enum class FrictionKind { coulomb, tresca, capped, power };
+
+/// "Coulomb's law", and what that allows the shear: "mu p".
+std::string law_text(FrictionKind kind);
+std::string bound_text(FrictionKind kind);
 
 /// A friction law: in a cell under the pressure p > 0 the shear traction is at most a bound, |q| <= f(p), and
 /// at the bound it opposes the slip. Stresses in Pa, or in any one unit.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "solver/elasticity/law/law_kind.hpp"
@@ -90,12 +91,32 @@ Layer read_layer(SceneReader& reader) {
   return layer;
 }
 
+/// Which numbers each law takes is a thing to know, not a misspelling.
+void refuse_numbers_of_other_laws(SceneReader& reader, FrictionKind kind) {
+  const std::string friction = "contact.friction";
+  const std::string strength = "contact.shear_strength";
+  const std::string exponent = "contact.friction_exponent";
+  const std::map<FrictionKind, std::vector<std::string>> numbers{{FrictionKind::coulomb, {friction}},
+                                                                 {FrictionKind::tresca, {strength}},
+                                                                 {FrictionKind::capped, {friction, strength}},
+                                                                 {FrictionKind::power, {friction, exponent}}};
+  const std::vector<std::string>& taken = numbers.at(kind);
+  for (const std::string& key : {friction, strength, exponent}) {
+    if (std::ranges::find(taken, key) != taken.end() || !reader.has(key)) continue;
+    reader.fail(key, fmt::format("{}", *reader.find_number(key)),
+                fmt::format("left out: friction_law = \"{}\" takes {} and no {}", to_string(kind),
+                            fmt::join(taken, ", "), key));
+  }
+}
+
 FrictionLaw read_friction(SceneReader& reader) {
   FrictionLaw law;
   law.kind = reader.choice_or("contact.friction_law", law.kind, kFrictionLaws);
-  if (law.kind == FrictionKind::tresca)
+  const bool tresca = law.kind == FrictionKind::tresca;
+  if (law.kind != FrictionKind::capped)
     reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
-  if (law.kind != FrictionKind::tresca) law.coefficient = reader.number("contact.friction");
+  refuse_numbers_of_other_laws(reader, law.kind);
+  if (!tresca) law.coefficient = reader.number("contact.friction");
   if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
     law.shear_strength = reader.number("contact.shear_strength");
   if (law.kind == FrictionKind::power) law.exponent = reader.number("contact.friction_exponent");

@@ -20,6 +20,11 @@ using namespace testing;
 
 constexpr double kStrength = 0.4 * paper::kFriction * paper::kPeakPressure;
 
+const std::string kBodies =
+    "[upper]\nshape = \"sphere\"\nradius = 0.018\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n"
+    "[lower]\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n[load]\nnormal = 1000\nmoment_ratio = 0.5\n"
+    "[grid]\ncells = [32, 32]\n";
+
 Scene scene_under(FrictionKind kind, double moment_ratio = 0.7) {
   Scene scene = paper_scene(32, moment_ratio);
   scene.tolerance = 1e-12;
@@ -169,6 +174,22 @@ TEST(FrictionLaw, IsRefusedWhereItIsInfinite) {
   scene.friction.exponent = 3.0;
   scene.friction.coefficient = 1e300;
   EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr("contact.friction"));
+}
+
+TEST(FrictionLaw, SaysWhichNumbersItTakes) {
+  const auto said = [](const std::string& law, const std::string& numbers) {
+    return complaint([&] {
+      read_scene_text("[contact]\nfriction_law = \"" + law + "\"\n" + numbers + kBodies, "a.toml");
+    });
+  };
+  EXPECT_THAT(said("tresca", "shear_strength = 1e8\nfriction = 0.1\n"),
+              AllOf(HasSubstr("contact.friction = 0.1"),
+                    HasSubstr("takes contact.shear_strength and no contact.friction")));
+  EXPECT_THAT(said("coulomb", "shear_strength = 1e8\nfriction = 0.1\n"),
+              HasSubstr("no contact.shear_strength"));
+  EXPECT_THAT(said("capped", "shear_strength = 1e8\nfriction = 0.1\nfriction_exponent = 2\n"),
+              HasSubstr("no contact.friction_exponent"));
+  EXPECT_EQ(said("capped", "shear_strength = 1e8\nfriction = 0.1\n"), "");
 }
 
 }  // namespace

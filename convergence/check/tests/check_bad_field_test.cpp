@@ -159,6 +159,42 @@ TEST_F(CheckBadField, NotACellThatCarriesNextToNothing) {
   find_good(rows, scene_);
 }
 
+/// Hertz's pressure of the paper's load on another radius, with |q| = mu p everywhere: M = 3 pi/16 mu W a.
+FieldRows sliding_rows(int cells, double radius) {
+  const double a = radius * std::cbrt(0.75 * 1000.0 * 0.018 * 2.0 * 0.91 / 210e9);
+  const double h = 2.0 * a / (cells - 4);
+  FieldRows rows;
+  for (int i = 0; i < cells * cells; ++i) {
+    const double x1 = (i / cells - 0.5 * (cells - 1)) * h;
+    const double x2 = (i % cells - 0.5 * (cells - 1)) * h;
+    const double r = std::hypot(x1, x2);
+    if (!(r < a)) continue;
+    const double p = 1.5 * 1000.0 / (std::numbers::pi * a * a) * std::sqrt(1.0 - r * r / (a * a));
+    rows.push_back({x1, x2, p, -0.1 * p * x2 / r, 0.1 * p * x1 / r});
+  }
+  return rows;
+}
+
+TEST(CheckSlidingField, IsJudgedByItsRadiusAndItsMoment) {
+  for (const int cells : {32, 48}) {
+    for (const double radius : {0.79, 0.97, 1.0}) {
+      const Json result = find_bad(sliding_rows(cells, radius), scene_of("paper", cells),
+                                   HasSubstr("all of the contact slips"));
+      EXPECT_NEAR(result["moment_error"], radius / 0.9 - 1.0, 5e-3);
+      EXPECT_EQ(judgement(result, "pressure")["holds"], radius == 1.0);
+    }
+  }
+}
+
+// Midpoint samples of a field next to the limit slip everywhere, up to rounding.
+TEST(CheckSlidingField, IsNotARightOneNextToTheLimit) {
+  for (const char* ratio : {"0.9999", "0.99999", "0.999999"}) {
+    const solver::Scene scene = scene_of("paper", 48, {fmt::format("load.moment_ratio={}", ratio)});
+    const solver::Solution solution = solver::solve(scene);
+    find_good(rows_of(solution), scene, solution.twist_angle);
+  }
+}
+
 TEST_F(CheckBadField, Twists) {
   const double twist = solution_.twist_angle;
   find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);

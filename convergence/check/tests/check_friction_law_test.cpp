@@ -41,6 +41,19 @@ TEST(CheckFrictionLaw, NamesAWrongStrength) {
            HasSubstr("a friction 1.1 times that of the scene's law"));
 }
 
+TEST(CheckFrictionLaw, SpeaksOfTheScenesLaw) {
+  const FieldRows field = solved(under({}));
+  for (const auto& [settings, law] :
+       {std::pair{kTresca, "Tresca's law"}, {kCapped, "capped law"}, {kPower, "power law"}}) {
+    const std::string said = check_text(check_rows(field, under(settings)));
+    EXPECT_THAT(said, AllOf(HasSubstr("bad"), Not(HasSubstr("Coulomb's law is")),
+                            Not(HasSubstr("Coulomb's law holds"))));
+    EXPECT_THAT(
+        check_text(check_rows(solved(under(settings)), under(settings))),
+        AllOf(HasSubstr(std::string(law)), Not(HasSubstr("above mu p by")), Not(HasSubstr("Coulomb: 0"))));
+  }
+}
+
 TEST(CheckFrictionLaw, TakesAMap) {
   const std::filesystem::path map = temporary_file("check_map.csv");
   std::ofstream stream(map);

@@ -297,7 +297,7 @@ TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
   } members[] = {{&Certificate::gap, "gap / energy"},
                  {&Certificate::moment, "the moment's error"},
                  {&Certificate::force, "the force's error"},
-                 {&Certificate::friction_bound, "|q| above mu p"}};
+                 {&Certificate::friction_bound, "|q| above its bound"}};
   for (const auto& [member, name] : members) {
     for (const double value : {2e-8, kNaN, HUGE_VAL}) {
       Certificate fails = holds;
