@@ -133,7 +133,7 @@ def program(page):
     body = [["version", program["version"] or "–", ""],
             ["iterations", plain(own["iterations"]) if "iterations" in own else "–", ""],
             ["seconds", seconds(own["seconds"]) if "seconds" in own else "–", f"{seconds(program['wall_seconds'])} with its start"],
-            ["twist", quantity(own["twist"], ANGLES, 6) if "twist" in own else "–", quantity(answer["twist_angle"], ANGLES, 6)],
+            ["twist", quantity(own["twist_angle"], ANGLES, 6) if "twist_angle" in own else "–", quantity(answer["twist_angle"], ANGLES, 6)],
             ["gap over energy", "–", "–" if answer["certificate"]["gap"] is None else sci(answer["certificate"]["gap"])]]
     if own.get("message"):
         body.append(["message", own["message"], ""])

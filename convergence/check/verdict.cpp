@@ -208,11 +208,14 @@ std::string twist_mistake(const Examination& e, double allowed) {
   };
   const double lower = compliance(e.scene.lower);
   const double upper = compliance(e.scene.upper);
-  const std::array<Ratio, 5> ratios{{{lower / (lower + upper), "the compliance of one body only"},
+  const auto& exact = e.exact.oracle;
+  const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
+  const std::array<Ratio, 6> ratios{{{lower / (lower + upper), "the compliance of one body only"},
                                      {upper / (lower + upper), "the compliance of one body only"},
                                      {2.0, "twice the compliance of the pair"},
                                      {180.0 / std::numbers::pi, "a twist in degrees"},
-                                     {-1.0, "a twist of the other sense"}}};
+                                     {-1.0, "a twist of the other sense"},
+                                     {normalised, "the normalised twist of a result, G a^2 phi/(mu W)"}}};
   for (const Ratio& ratio : ratios) {
     if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
   }

@@ -184,10 +184,14 @@ Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files) 
   Json own = Json::object();
   if (!fs::is_regular_file(files.numbers)) return own;
   try {
-    const Json read = read_json(files.numbers, "JSON with twist, iterations, seconds, converged, message");
-    for (const char* key : {"twist", "iterations", "seconds"}) {
+    const Json read =
+        read_json(files.numbers, "JSON with twist_angle, iterations, seconds, converged, message");
+    for (const char* key : {"twist_angle", "twist", "iterations", "seconds"}) {
       if (read.is_object() && read.contains(key) && read[key].is_number()) own[key] = read[key];
     }
+    // Its older name, rad here, which in results is G a^2 phi/(mu W).
+    if (own.contains("twist_angle")) own.erase("twist");
+    if (own.contains("twist")) own["twist_angle"] = own["twist"];
     if (read.is_object() && read.contains("converged") && read["converged"].is_boolean()) {
       own["converged"] = read["converged"];
     }

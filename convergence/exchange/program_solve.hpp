@@ -45,7 +45,8 @@ struct ReadFields {
 ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                          const PosedScene& posed);
 
-/// The program's own numbers, as far as it wrote any: twist, iterations, seconds, converged, message.
+/// The program's own numbers, as far as it wrote any: twist_angle (rad), iterations, seconds, converged,
+/// message.
 Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
 
 }  // namespace slipstick::convergence

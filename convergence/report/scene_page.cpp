@@ -95,7 +95,8 @@ Scene on_finest_mesh(const RunSpec& base, const Scene& scene, const Meshes& mesh
 Json check_program(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
                    const fs::path& fields) {
   CheckOptions options;
-  if (const Json& own = answer["program"]["own"]; own.contains("twist")) options.twist = own["twist"];
+  if (const Json& own = answer["program"]["own"]; own.contains("twist_angle"))
+    options.twist = own["twist_angle"];
   return check_field(on_finest_mesh(base, scene, meshes), fields, options);
 }
 

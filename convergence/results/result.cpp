@@ -1,5 +1,7 @@
 #include "convergence/results/result.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -124,6 +126,24 @@ Json area_json(const solver::CountedArea& area) {
   return {{"counted", area.counted}, {"corrected", area.corrected}, {"uncertainty", area.uncertainty}};
 }
 
+/// An imposed twist of so many times the elastic one, under which no cell sticks, tells nothing but the limit
+/// moment.
+constexpr double kFarBeyondElastic = 10.0;
+
+/// A twist that was hardly meant in rad. While nothing slips, twist times moment is twice the elastic energy.
+void add_load_warning(Json& json, const Solution& solution) {
+  const auto imposed = solver::value_if<solver::Twist>(solution.loads.torsion);
+  const double a = solution.contact_radius;
+  const double normalised = solution.shear_modulus * a * a / solution.friction_force;
+  const double times = std::abs(solution.twist_angle * solution.moment) / (2.0 * solution.elastic_energy);
+  if (!imposed || solution.stick_cells > 0 || !(times > kFarBeyondElastic)) return;
+  json["load_warning"] = fmt::format(
+      "no cell sticks: the imposed twist of {:.6g} rad is {:.3g} times the one that the bodies take up by "
+      "deforming; {}.twist is in rad, while a result's twist is G a^2 phi/(mu W), of which {:.6g} is {:.6g} "
+      "rad",
+      *imposed, times, solution.loads.key, *imposed, *imposed / normalised);
+}
+
 /// The contact's state: what every step of a history has.
 void add_state(Json& json, const solver::Scene& scene, const Solution& solution) {
   const double a = solution.contact_radius;
@@ -151,6 +171,7 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   set_number(json, "moment_ratio", solution.moment / solution.moment_limit, "the limit moment is zero");
   set_number(json, "twist", solution.shear_modulus * a * a * solution.twist_angle / solution.friction_force,
              "without friction the normalised twist has no scale");
+  add_load_warning(json, solution);
   json["force"] = solution.force;
   json["displacement"] = solution.displacement;
   json["limit"] = limit_json(solution.limit);
@@ -239,6 +260,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   set_number(json["slip_direction"], "mean", solution.slip_direction.mean, no_direction);
   set_number(json["slip_direction"], "max", solution.slip_direction.max, no_direction);
   add_errors(json, solution, exact);
+  if (!has_history(scene)) set_number(json, "dissipated_total", solution.dissipated, kBroken);
   add_seconds(json, solution.seconds);
   json["solver_bytes"] = solution.bytes;
   json["predicted_bytes"] = solution.predicted_bytes;
@@ -255,8 +277,9 @@ void add_steps(Json& result, Json steps) {
   double applications = 0.0;
   double seconds = 0.0;
   double worst = 0.0;
-  for (const Json& step : steps) {
+  for (Json& step : steps) {
     dissipated += step["dissipated"].is_number() ? step["dissipated"].get<double>() : NAN;
+    set_number(step, "dissipated_total", dissipated, kBroken);
     applications += step["operator_applications"].get<double>();
     seconds += step["seconds"]["total"].get<double>();
     const Json& gap = step["certificate"]["gap"];
@@ -268,6 +291,7 @@ void add_steps(Json& result, Json steps) {
   set_number(history, "worst_gap", worst, kBroken);
   history["operator_applications"] = applications;
   history["seconds"] = seconds;
+  if (result.contains("dissipated")) set_number(result, "dissipated_total", dissipated, kBroken);
   result["steps"] = std::move(steps);
 }
 

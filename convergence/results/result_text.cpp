@@ -73,12 +73,13 @@ std::string safeguards_text(const Json& r) {
   return text;
 }
 
-/// How the solve went.
+/// How the solve went. Another program's operator is its own.
 std::string status_text(const Json& r) {
+  const std::string applications =
+      r.contains("program") ? "" : number_text(r["operator_applications"]) + " operator applications, ";
   std::string text = text_line(
-      "status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
-                            r["status"].get<std::string>(), r["iterations"].get<int>(),
-                            number_text(r["operator_applications"]), number_text(r["seconds"]["total"])));
+      "status", fmt::format("{} ({} iterations, {}{} s)", r["status"].get<std::string>(),
+                            r["iterations"].get<int>(), applications, number_text(r["seconds"]["total"])));
   if (r.contains("message")) text += text_line("why", r["message"].get<std::string>());
   if (const std::string taken = safeguards_text(r); !taken.empty()) text += text_line("safeguards", taken);
   return text;
@@ -97,6 +98,7 @@ std::string state_text(const Json& r) {
                                          number_text(r["moment_ratio"]), number_text(r["moment_limit"])) +
                                  error_text(r, "moment_error")) +
          text_line("twist", number_text(r["twist_angle"]) + " rad" + error_text(r, "twist_error")) +
+         (r.contains("load_warning") ? text_line("warning", r["load_warning"].get<std::string>()) : "") +
          translation_text(r) + stick_text(r);
 }
 
@@ -217,10 +219,12 @@ std::string energy_text(const Json& r) {
 }  // namespace
 
 std::string solve_text(const Json& r) {
+  std::string by =
+      fmt::format("operator {}, method {}", r["operator"].get<std::string>(), r["method"].get<std::string>());
+  if (r.contains("program")) by = "program " + r["program"]["name"].get<std::string>();
   std::string text =
-      fmt::format("{}: {} x {} cells, pressure {}, operator {}, method {}\n", r["name"].get<std::string>(),
-                  r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
-                  r["operator"].get<std::string>(), r["method"].get<std::string>());
+      fmt::format("{}: {} x {} cells, pressure {}, {}\n", r["name"].get<std::string>(),
+                  r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(), by);
   text += status_text(r) + state_text(r) + limit_text(r) + coupling_text(r);
   text += exact_answer_text(r);
   text += text_line("certificate",

@@ -58,6 +58,18 @@ class Program(ProgramTest):
         self.run_program(*solve("paper", "--set", "load.moment=0.05"), code=2,
                          says=("load.moment = 0.05 N m", "below 0.0287", "paper.toml"))
 
+    def test_a_twist_that_was_hardly_meant_in_rad_is_warned_of(self):
+        """`twist` of a result is normalised, load.twist is in rad."""
+        meant = self.result(*solve("paper"))
+        self.assertNotIn("load_warning", meant)
+        for twist, warned in ((meant["twist"], True), (meant["twist_angle"], False), (-4 * meant["twist_angle"], False)):
+            words = solve("paper", "--set", f"load.twist={twist}")
+            result = self.result(*words)
+            self.assertEqual("load_warning" in result, warned)
+            if warned:  # it says which twist that would be in rad
+                self.assertIn(f"{meant['twist_angle']:.4g}"[:-1], result["load_warning"])
+                self.run_program(*words, says=("warning", "in rad"))
+
     def test_a_solve_that_misses_its_tolerance_is_exit_code_1_and_still_written(self):
         self.run_program(*solve("paper", "--set", "solver.max_iterations=3", "--json", "missed.json"), code=1,
                          says="within 3 operator applications")

@@ -33,7 +33,8 @@ std::map<std::string, std::string> pages(const CLI::App& app) {
       {"scene.md",
        keys_markdown({"Keys of a scene",
                       "What `slipstick solve SCENE.toml` and every command that takes a scene read. Units "
-                      "are SI, or any other\nconsistent set; `--set key=value` overrides any key, with its "
+                      "are SI, or any other\nconsistent set, though results name those of SI; `--set "
+                      "key=value` overrides any key, with its "
                       "table: `--set load.moment_ratio=0.5`,\n`--set \"step[0].moment=2\"`. A word's "
                       "meanings stand in the order of the words."},
                      solver::scene_keys())},

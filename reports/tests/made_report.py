@@ -153,7 +153,7 @@ def small_page():
         "force": None, "force_reason": "not asked for",
         "steps": [{"name": "step", "twist_angle": x, "moment": x / (1 + x), "exact": {"twist_angle": x, "moment": x}} for x in (0.1, 0.2, 0.1)],
         "history": {"worst_gap": 2e-9, "operator_applications": 20.4, "seconds": 0.125, "dissipated": 1e-6},
-        "program": {"name": "mine", "version": "1.0", "own": {"twist": 1.2e-3, "message": "so & so"}, "wall_seconds": 0.5}}
+        "program": {"name": "mine", "version": "1.0", "own": {"twist_angle": 1.2e-3, "message": "so & so"}, "wall_seconds": 0.5}}
     points = [{"method": method, "cells": n, "tolerance": 1e-6, "status": "converged", "seconds": 1e-4 * n**2, "error": 1 / n**2}
               for method in ("coulomb", "paper") for n in (8, 16)]
     asked = [{"wanted": 1e-2, "cells": [16, 8], "tolerance": 1e-3, "grids": 4, "seconds": 0.01},

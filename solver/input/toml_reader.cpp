@@ -52,6 +52,18 @@ std::optional<double> number_of(const toml::node& node) {
   return std::nullopt;
 }
 
+/// Numbers that are allowed; beside a text with a point as shells and C may have it, .5 or 5., also how TOML
+/// has it.
+std::string for_number(const toml::node& node, const std::string& allowed) {
+  const std::string text = fmt::format(" {} ", node.value_or(std::string()));
+  const auto is_digit = [&](std::size_t at) { return text[at] >= '0' && text[at] <= '9'; };
+  for (std::size_t at = 1; (at = text.find('.', at)) != std::string::npos; ++at) {
+    if (is_digit(at - 1) != is_digit(at + 1))
+      return allowed + "; TOML has a digit on both sides of a point, 0.5";
+  }
+  return allowed;
+}
+
 bool is_array_of_tables(const toml::node& node) {
   return node.is_array() && node.is_homogeneous<toml::table>();
 }
@@ -235,7 +247,9 @@ std::optional<double> SceneReader::find_number(const std::string& key, const Ran
   const auto found = toml_->node(key);
   if (!found) return std::nullopt;
   const auto value = number_of(*found.node());
-  if (!value) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
+  if (!value) {
+    fail(key, print(*found.node()), for_number(*found.node(), fmt::format("a number, {}", range.words)));
+  }
   if (!range.contains(*value)) fail(key, print(*found.node()), range.words);
   return value;
 }
@@ -255,7 +269,9 @@ std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& k
   if (!found) return std::nullopt;
   const toml::array* const array = found.as_array();
   const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
-  if (array == nullptr || array->size() != 2) fail(key, print(*found.node()), allowed);
+  if (array == nullptr || array->size() != 2) {
+    fail(key, print(*found.node()), for_number(*found.node(), allowed));
+  }
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto value = number_of((*array)[i]);

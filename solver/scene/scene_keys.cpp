@@ -106,7 +106,8 @@ void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
        kRatio, "Moment over the limit moment of this pressure and mesh. One of this and the next two."},
       {at + "moment", kNumber, "N m", first("none"), kFinite, "Moment about the grid's origin."},
       {at + "twist", kNumber, "rad", first("none"), kFinite,
-       "Twist imposed in place of the moment, since the first step."},
+       "Twist imposed in place of the moment, since the first step: `twist_angle` of a result, whose `twist` "
+       "is normalised."},
       {at + "force", KeyType::pair, "N", first("[0, 0]"), kFinite,
        "Tangential force on the indenter. One of this and the next."},
       {at + "displacement", KeyType::pair, "m", first("none"), kFinite,

@@ -200,6 +200,8 @@ TEST_F(CheckBadField, Twists) {
   find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);
   find_bad(rows_, scene_, HasSubstr("twice the compliance"), 2.0 * twist);
   find_bad(rows_, scene_, HasSubstr("a twist in degrees"), twist * 180.0 / std::numbers::pi);
+  const double normalised = find_oracle(scene_).oracle->state.twist;
+  find_bad(rows_, scene_, HasSubstr("the normalised twist of a result"), normalised);
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
 }
 

@@ -25,7 +25,8 @@ def main():
         solver = FrictionSolver(n, side, exchange.modulus, exchange.poisson_ratio, CoulombFriction(exchange.friction))
         solver.set_gap(exchange.gap)
         found = solver.step(p_bar=mean, q_bar=np.array(load["force"]) / side**2, tol_normal=1e-10, tol_tangential=1e-8)
-        numbers = {"iterations": found.tangential_iters, "converged": found.converged, "message": found.status_reason, "twist": 0.0}
+        numbers = {"iterations": found.tangential_iters, "converged": found.converged, "message": found.status_reason,
+                   "twist_angle": 0.0}
         return [solver.pressure, found.qx, found.qy], numbers
 
     exchange.answer(partial_slip if any(load.get("force", [0])) and load.get("twist") == 0 else normal)

@@ -66,7 +66,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             pressure = responded(np.zeros(3), folder)[0]
             motion = exchange.motion_under_loads(lambda tried: responded(tried, folder)[1:], pressure)
-            return responded(motion, folder), {"twist": motion[2]}
+            return responded(motion, folder), {"twist_angle": motion[2]}
 
     exchange.answer(solve)
 

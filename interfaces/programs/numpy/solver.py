@@ -85,7 +85,7 @@ def tractions_of(scene, pressure):
         return shrink * moved
 
     q, iterations, converged = minimise(apply, 0.0, project, np.zeros((2, *x1.shape)), 0.1 * scene["tolerance"])
-    return q, {"twist": motion[2] / size, "iterations": iterations, "converged": bool(converged)}
+    return q, {"twist_angle": motion[2] / size, "iterations": iterations, "converged": bool(converged)}
 
 
 scene_file, field_file, numbers_file = map(pathlib.Path, sys.argv[1:])

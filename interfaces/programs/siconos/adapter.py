@@ -72,7 +72,7 @@ def main():
             return q
 
         motion = exchange.motion_under_loads(tractions, p)
-        return [p, *tractions(motion)], {"twist": motion[2], "iterations": sweeps, "converged": not failed}
+        return [p, *tractions(motion)], {"twist_angle": motion[2], "iterations": sweeps, "converged": not failed}
 
     exchange.answer(solve)
 

@@ -146,7 +146,7 @@ class OfTheGuide(WithFolder):
                 cells, result = ("--set", "grid.cells=[32,32]"), self.folder / "result.json"
                 solved = run("solve", scene, *cells, "--program", program, "--fields", field, "--json", result)
                 self.assertIn(solved.returncode, (0, 1), solved.stderr)
-                twist = json.loads(result.read_text())["program"]["own"]["twist"]
+                twist = json.loads(result.read_text())["program"]["own"]["twist_angle"]
                 done = run("check", scene, field, *cells, "--twist", twist)
             with self.subTest(mistake=name):
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
@@ -191,6 +191,24 @@ class ThatBreak(WithFolder):
         self.assertLess(time.monotonic() - start, 100)
         left = [each for each in Path("/proc").glob("[0-9]*/environ") if marker in read(each)]
         self.assertEqual(left, [])
+
+    def test_says_its_twist_in_rad(self):
+        """Under the name that results have for rad; the name of before, which results have for the normalised twist, is
+        understood where that is missing."""
+        right = (NUMPY / "solver.py").read_text()
+        for numbers, said in (('"twist_angle": motion[2] / size', {"twist_angle"}),
+                              ('"twist": motion[2] / size', {"twist_angle", "twist"}),
+                              ('"twist_angle": motion[2] / size, "twist": 0.2', {"twist_angle"})):
+            changed = right.replace('"twist_angle": motion[2] / size', numbers)
+            self.assertIn(numbers, changed)
+            done, result = self.solve(self.program(changed))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            own = result["program"]["own"]
+            self.assertEqual({key for key in own if key.startswith("twist")}, said)
+            for key in said:
+                self.assertAlmostEqual(own[key] / result["twist_angle"], 1, delta=1e-6)
+        self.assertNotIn("operator", done.stdout)  # none of this program's own made the answer
+        self.assertIn("made", done.stdout)
 
     def test_is_part_of_what_a_kept_result_depends_on(self):
         right = (NUMPY / "solver.py").read_text()

@@ -53,7 +53,7 @@ def _find(wanted: str, profile: str, names: dict[str, Values]) -> Any:
 
 def twist(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
           stick_complement: Values = None, profile: str = "hertz") -> Any:
-    """The twist G a^2 phi/(mu W) of first loading.
+    """The normalised twist G a^2 phi/(mu W) of first loading; phi is in rad, as load.twist and twist_angle are.
 
     >>> round(twist(0.5), 12)
     0.073705510231
@@ -187,7 +187,8 @@ def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
 
 def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray:
     """The states after each of the moments M/M_lim in (-1, 1) that a contact under constant normal load goes through,
-    from none: moment_ratio, moment, twist, stick_ratio (front of the newest slip), tangent_stiffness, dissipated.
+    from none: moment_ratio, moment, twist, stick_ratio (front of the newest slip), tangent_stiffness, dissipated (since the first
+    loading began: dissipated_total of a solve, whose dissipated is that of one step).
 
     >>> loop = history([0.5, -0.5, 0.5])
     >>> bool(abs(loop.twist[1] + loop.twist[0]) < 1e-15 and loop.dissipated[2] > loop.dissipated[1])

@@ -2,6 +2,7 @@
 
 #include "solver/input/toml_reader.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -104,6 +105,20 @@ TEST_F(Tables, AreOverriddenByIndex) {
   EXPECT_EQ(steps.number("step[1].force", kFinite), 2.0);
   EXPECT_EQ(steps.number("step[2].part[0].length", kFinite), 9.0);
   EXPECT_THAT(complaint([&] { steps.fail("step[0].force", "7", "less"); }), HasSubstr("--set"));
+}
+
+/// A point without a digit on one side, as shells have it, is named for what it is; a name may have one.
+TEST_F(Tables, SayHowNumbersAreWritten) {
+  for (const char* number : {".5", "-.5", "5.", "5.e-1"}) {
+    SceneReader steps = reader(kSteps, {fmt::format("step[0].force={}", number)});
+    EXPECT_THAT(complaint([&] { steps.find_number("step[0].force", kFinite); }), HasSubstr("both sides"));
+    SceneReader names = reader(kSteps, {fmt::format("names=[1, {}]", number)});
+    EXPECT_THAT(complaint([&] { names.find_pair("names", kFinite); }), HasSubstr("both sides"));
+  }
+  SceneReader steps = reader(kSteps, {"step[0].force=five.", "step[1].force=0.5", "name=.5"});
+  EXPECT_THAT(complaint([&] { steps.find_number("step[0].force", kFinite); }), Not(HasSubstr("both sides")));
+  EXPECT_EQ(steps.number("step[1].force", kFinite), 0.5);
+  EXPECT_EQ(steps.text("name"), ".5");
 }
 
 TEST_F(Tables, AreNotMadeByOverrides) {
