@@ -83,7 +83,7 @@ endif()
 function(slipstick_find_python result)
   foreach(candidate "${SLIPSTICK_PYTHON}" /usr/bin/python3 python3)
     if(candidate)
-      execute_process(COMMAND "${candidate}" -c "import numpy, matplotlib, jinja2, h5py"
+      execute_process(COMMAND "${candidate}" -I -c "import numpy, matplotlib, jinja2, h5py"
         RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
       if(status EQUAL 0)
         set(${result} "${candidate}" PARENT_SCOPE)

@@ -37,7 +37,20 @@ def load(path):
         raise InputError(f"{path}: {error}") from error
     if not isinstance(content, dict):
         raise InputError(f"{path}: holds no JSON object")
-    return content
+    return printable(content)
+
+
+STEERING = {code: f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" for code in (
+    *range(0x9), *range(0xb, 0x20), *range(0x7f, 0xa0), 0x61c, 0x200e, 0x200f, *range(0x2028, 0x202f), *range(0x2066, 0x206a))}
+
+
+def printable(tree):
+    """The same content without characters that steer what shows a text or turn its direction; names of users may have any."""
+    if isinstance(tree, dict):
+        return {printable(key): printable(part) for key, part in tree.items()}
+    if isinstance(tree, list):
+        return [printable(part) for part in tree]
+    return tree.translate(STEERING) if isinstance(tree, str) else tree
 
 
 def value(tree, path):

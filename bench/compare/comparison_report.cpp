@@ -16,7 +16,7 @@ namespace {
 
 using convergence::CaseVerdict;
 using convergence::JunitCase;
-using convergence::markdown_cell;
+using convergence::markdown_text;
 using Json = nlohmann::ordered_json;
 
 /// From the worst to the best.
@@ -156,15 +156,15 @@ std::string comparison_text(const ComparisonReport& report) {
 
 std::string comparison_markdown(const ComparisonReport& report) {
   std::string text = fmt::format("### {}\n\n{}; {}.\n\n", counts_of(report.comparison.benchmarks),
-                                 markdown_cell(heading(report)), rules_text(report.rules));
+                                 markdown_text(heading(report)), rules_text(report.rules));
   for (const std::string& obstacle : report.comparison.obstacles) {
-    text += fmt::format("- {}{}\n", kObstacle, markdown_cell(obstacle));
+    text += fmt::format("- {}{}\n", kObstacle, markdown_text(obstacle));
   }
   std::vector<std::string> rows;
   for (const ComparedBenchmark& benchmark : worst_first(report.comparison.benchmarks)) {
     Row row = row_of(benchmark);
-    row[0] = markdown_cell(row[0]);
-    rows.push_back(fmt::format("| {} | {} |", fmt::join(row, " | "), markdown_cell(benchmark.remark)));
+    row[0] = markdown_text(row[0]);
+    rows.push_back(fmt::format("| {} | {} |", fmt::join(row, " | "), markdown_text(benchmark.remark)));
   }
   return convergence::markdown_with_table(text + "\n", fmt::format("| {} | |", fmt::join(kHeader, " | ")),
                                           rows, "benchmarks");

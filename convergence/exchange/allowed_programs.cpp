@@ -34,7 +34,8 @@ void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed)
   }
   throw solver::InputError(
       scene.source.string(), "solver.program", scene.program.string(),
-      "a program that a file names runs only with --allow-programs; it may do whatever you may do");
+      "one that the command line names, by --program or by --set solver.program=FILE; others run with "
+      "--allow-programs only, since a program may do whatever you may do");
 }
 
 }  // namespace slipstick::convergence

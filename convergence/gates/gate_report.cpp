@@ -137,10 +137,10 @@ std::string markdown_row(const Judgement& judgement) {
   const std::string remarks =
       judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
   return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", outcome_text(judgement),
-                     markdown_cell(judgement.gate.id), markdown_cell(judgement.gate.quantity),
-                     markdown_cell(value_text(judgement)),
-                     was_read(judgement) ? markdown_cell(bound_text(judgement.gate)) : "-",
-                     factor_text(judgement), markdown_cell(remarks));
+                     markdown_text(judgement.gate.id), markdown_text(judgement.gate.quantity),
+                     markdown_text(value_text(judgement)),
+                     was_read(judgement) ? markdown_text(bound_text(judgement.gate)) : "-",
+                     factor_text(judgement), markdown_text(remarks));
 }
 
 Json judgement_json(const Judgement& judgement) {

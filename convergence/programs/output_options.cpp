@@ -38,6 +38,10 @@ void require_outputs_apart(const CLI::App& command) {
     if (!is_output(*option)) continue;
     for (const std::string& output : option->results()) {
       if (output == "-") continue;
+      if (output.empty() || output.starts_with("--")) {
+        throw solver::InputError(fmt::format("{} '{}'", option->get_name(), output),
+                                 "names no file; allowed: a file's name, as ./FILE where it begins with --");
+      }
       std::error_code error;
       const fs::path target = fs::weakly_canonical(solver::behind_links(fs::absolute(output, error)), error);
       if (!fs::is_regular_file(target, error) && fs::exists(target, error)) continue;  // a device takes all

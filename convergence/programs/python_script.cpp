@@ -33,7 +33,11 @@ void run_report_script(const std::string& script, const std::vector<std::string>
         "python3-jinja2 python3-h5py; elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
         done));
   }
-  std::vector<std::string> words{python, project_file("reports") / script};
+  // -I: nobody's PYTHONPATH, PYTHONHOME or folder says what is imported, but for the script's own folder.
+  constexpr const char* kRunScript =
+      "import runpy, sys; del sys.argv[0]; sys.path.insert(0, sys.argv[0].rpartition('/')[0]); "
+      "runpy.run_path(sys.argv[0], run_name='__main__')";
+  std::vector<std::string> words{python, "-I", "-c", kRunScript, project_file("reports") / script};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const ProgramEnd end = run_program(words, {.tied_by = own_program()});
   if (end.code != 0) {

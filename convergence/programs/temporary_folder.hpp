@@ -19,7 +19,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder()
       : path_(make()),
-        remover_({"setsid", "sh", "-c", "cat > /dev/null; rm -rf -- \"$0\"", path_}, {.fed = true}) {}
+        remover_({"setsid", "sh", "-c", "read -r end; rm -rf -- \"$0\"", path_}, {.fed = true}) {}
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -31,7 +31,13 @@ class TemporaryFolder {
 
  private:
   static std::string make() {
-    std::string name = std::filesystem::temp_directory_path() / "slipstick-XXXXXX";
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    if (error) {
+      throw solver::InputError("TMPDIR", "names no folder for temporary files (" + error.message() +
+                                             "); allowed: one that is there, or none, for /tmp");
+    }
+    std::string name = folder / "slipstick-XXXXXX";
     if (mkdtemp(name.data()) == nullptr) throw solver::InputError(name, solver::why_not_written(errno));
     return name;
   }

@@ -112,8 +112,8 @@ std::string summary_row(const Json& page) {
     lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", line[0].get<std::string>(),
                          line[1].get<std::string>());
   }
-  return fmt::format("| {} | {} | {} |", markdown_cell(page["scene"]["name"].get<std::string>()),
-                     page["headline"]["verdict"].get<std::string>(), markdown_cell(lines));
+  return fmt::format("| {} | {} | {} |", markdown_text(page["scene"]["name"].get<std::string>()),
+                     page["headline"]["verdict"].get<std::string>(), markdown_text(lines));
 }
 
 /// A page for each scene. Exit code 1 where a page says bad.

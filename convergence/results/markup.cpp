@@ -41,6 +41,21 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
+std::string markdown_text(std::string_view text) {
+  static const std::map<char, std::string> kMarkup{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'\n', "<br>"}, {'@', "@&#8203;"}, {'#', "#&#8203;"}};
+  constexpr std::string_view kLinks = "/.";  // of http:// and www., which a server makes links of
+  std::string escaped;
+  for (const char c : as_utf8(solver::printable(text))) {
+    const auto markup = kMarkup.find(c);
+    if (std::strchr("\\`*_[]|~", c) != nullptr) escaped += '\\';
+    if (kLinks.find(c) != std::string_view::npos && (escaped.ends_with(":") || escaped.ends_with("www")))
+      escaped += "&#8203;";  // a blank without width
+    escaped += markup == kMarkup.end() ? std::string(1, c) : markup->second;
+  }
+  return escaped;
+}
+
 std::string markdown_cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

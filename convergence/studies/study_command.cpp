@@ -1,12 +1,14 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/studies/study.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -35,8 +37,16 @@ int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& p
   return is_complete(result) ? 0 : 1;
 }
 
-int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
-                      Json& result) {
+/// What is complained of in an override that the study file gives, not the command line; else empty.
+std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line) {
+  constexpr std::string_view kSet = "--set";
+  if (!message.starts_with(kSet)) return "";
+  const std::string rest = message.substr(message.find_first_not_of(": ", kSet.size()));
+  const auto names = [&](const std::string& set) { return rest.starts_with(set.substr(0, set.find('='))); };
+  return std::ranges::any_of(command_line, names) ? "" : rest;
+}
+
+int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostream& text, Json& result) {
   const std::optional<Shard> shard = request.runs.wanted_shard();
   if (!request.figure.empty()) require_figure_format(request.figure);
   const Study study = read_study(request.study, request.runs.overrides);
@@ -51,6 +61,17 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
   text << study_text(result);
   if (!request.figure.empty()) draw_study(request.figure, result);
   return all_converged(result) ? 0 : 1;
+}
+
+int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
+                      Json& result) {
+  try {
+    return run_study_of(command, request, text, result);
+  } catch (const solver::InputError& error) {
+    const std::string of_file = complaint_of_file(error.what(), request.runs.overrides);
+    if (of_file.empty()) throw;
+    throw solver::InputError(request.study, of_file);
+  }
 }
 
 }  // namespace

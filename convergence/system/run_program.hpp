@@ -23,7 +23,8 @@ struct ProgramOptions {
   /// group, so that what reaches the group ends it too.
   std::filesystem::path tied_by = {};
   std::filesystem::path folder = {};  ///< that it runs in; empty: this program's own
-  /// It leads a process group of its own, which wait_at_most() kills as a whole.
+  /// It leads a process group of its own, which wait_at_most() kills as a whole. On Linux, where it is tied
+  /// too, no process that it started, whichever group or session that went to, outlives it.
   bool own_group = false;
 };
 
@@ -71,11 +72,14 @@ class Program {
   static void close_descriptor(int& descriptor);
   /// Whether it has ended, without waiting where `wait` is false; then end_ says how.
   bool reap(bool wait);
+  /// Kills it, with its group.
+  void stop();
 
   int process_ = -1;
   int input_ = -1;
   int output_ = -1;
   bool own_group_ = false;
+  bool guarded_ = false;
   ProgramEnd end_;
 };
 

@@ -4,9 +4,11 @@
 import json
 import math
 import os
+import subprocess
 from pathlib import Path
+from unittest.mock import patch
 
-from program_run import SCENES, SOURCE, ProgramTest, main
+from program_run import PROGRAM, SCENES, SOURCE, ProgramTest, main
 
 SMALL = ("--set", "grid.cells=[24,24]")
 
@@ -98,6 +100,26 @@ class Program(ProgramTest):
                                    ("--figure", "f-{step}.png", ("--figure", "{step}", "last step"))):
             self.run_program(*solve("paper", option, file, "--json", "refused.json"), code=2, says=says)
             self.assertFalse(Path("refused.json").exists(), option)
+
+    def test_what_an_environment_lacks_is_named(self):
+        with patch.dict(os.environ, TMPDIR="/no/such/folder"):
+            self.run_program(*solve("paper", "--figure", "f.svg"), code=2, says=("TMPDIR", "no folder", "allowed"))
+        for files in (6, 7, 8):
+            end = subprocess.run(["sh", "-c", f'ulimit -n {files} && exec "$0" "$@"', PROGRAM,
+                                  *solve("paper", "--figure", "f.svg")], capture_output=True, text=True)
+            self.assertIn(end.returncode, (0, 2), end.stderr)
+            self.assertNotIn("make its folder", end.stderr)
+        for option in ("--json", "--fields", "--figure"):
+            self.run_program(*solve("paper", option, ""), code=2, says=(option, "names no file"))
+
+    def test_figures_obey_no_environment_of_python(self):
+        for module in ("numpy", "runpy", "style", "sitecustomize"):
+            self.write(f"{module}.py", "raise SystemExit('a stranger was imported')")
+        for variables in ({"PYTHONPATH": str(self.folder)}, {"PYTHONHOME": "/no/such/folder"}):
+            with patch.dict(os.environ, variables):
+                self.run_program(*solve("paper", "--figure", "figure.svg"))
+            self.assertGreater(Path("figure.svg").stat().st_size, 10000)
+            Path("figure.svg").unlink()
 
     def test_figure_is_written_beside_the_result(self):
         for scene in (solve("ellipse"), solve("cone", "--model", "exact")):

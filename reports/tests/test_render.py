@@ -40,6 +40,12 @@ class WholePage(unittest.TestCase):
     def test_render_succeeds_in_silence(self):
         self.assertEqual(self.run_result, (0, ""))
 
+    def test_names_do_not_turn_the_text(self):
+        """Characters that steer a terminal or turn the direction of text, in names of users, are shown, not obeyed."""
+        file = self.output / "nasty.json"
+        file.write_text(json.dumps({"name": "a\u202eb\u2066c\x1b[1m\u009b", "rows": [{"k\u202e": "é\n\t"}]}))
+        self.assertEqual(results.load(file), {"name": r"a\u202eb\u2066c\x1b[1m\x9b", "rows": [{r"k\u202e": "é\n\t"}]})
+
     def test_every_figure_and_link_exists(self):
         targets = re.findall(r'(?:src|href)="([^"]+)"', self.page)
         anchors = set(re.findall(r'id="([^"]+)"', self.page))

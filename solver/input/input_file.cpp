@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include "solver/input/input_error.hpp"
 
@@ -91,18 +92,40 @@ bool lies_within(const std::filesystem::path& file, const std::filesystem::path&
                        std::prev(around.end());
 }
 
+namespace {
+
+/// The control character with which a text begins, and its bytes in UTF-8; 0, 1: none. Those of C0 but the
+/// end of a line and the tab, of C1, and those of Unicode that turn the direction of text or end a line.
+std::pair<unsigned, std::size_t> steering(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[i])) : 0U;
+  };
+  const auto between = [](unsigned low, unsigned x, unsigned high) { return low <= x && x <= high; };
+  const unsigned c = byte(0);
+  if ((c < ' ' && c != '\n' && c != '\t') || c == 0x7f) return {c, 1};
+  const unsigned two = (c & 0x1fU) << 6U | (byte(1) & 0x3fU);
+  if (c == 0xc2 && between(0x80, two, 0x9f)) return {two, 2};
+  if (c == 0xd8 && two == 0x61c) return {two, 2};
+  const unsigned three = (c & 0xfU) << 12U | (byte(1) & 0x3fU) << 6U | (byte(2) & 0x3fU);
+  const bool turns =
+      between(0x200e, three, 0x200f) || between(0x2028, three, 0x202e) || between(0x2066, three, 0x2069);
+  if (c == 0xe2 && byte(2) != 0 && turns) return {three, 3};
+  return {0, 0};
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
-  constexpr unsigned char kDelete = 0x7f;
-  constexpr unsigned char kUpper = 0xc2;  // before 0x80 to 0x9f in UTF-8: control characters as well
   std::string printable;
-  unsigned char before = 0;
-  for (const char each : text) {
-    const auto c = static_cast<unsigned char>(each);
-    const bool steers =
-        (c < ' ' && c != '\n' && c != '\t') || c == kDelete || (before == kUpper && c >= 0x80 && c < 0xa0);
-    if (steers && before == kUpper) printable.pop_back();
-    printable += steers ? fmt::format("\\x{:02x}", c) : std::string(1, each);
-    before = c;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto [character, bytes] = steering(text.substr(i));
+    if (bytes == 0) {
+      printable += text[i];
+    } else {
+      printable +=
+          character < 0x100 ? fmt::format("\\x{:02x}", character) : fmt::format("\\u{:04x}", character);
+    }
+    i += std::max<std::size_t>(1, bytes);
   }
   return printable;
 }

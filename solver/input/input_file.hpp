@@ -29,8 +29,8 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
 /// Whether a file lies in a folder or below, or would; links are followed.
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-/// A text that does not steer the terminal which shows it: control characters other than tab and end of line
-/// as \xNN.
+/// A text that does not steer what shows it: control characters other than tab and end of line as \xNN, those
+/// of Unicode that turn the direction of text or end a line as \uNNNN.
 std::string printable(std::string_view text);
 
 /// The beginning of a file's text, as a message shows it: bytes other than printable ASCII as \xNN.

@@ -131,6 +131,10 @@ std::string why_not_written(int error) {
     case ENOTDIR:
       advice = "make its folder, or name another place";
       break;
+    case EMFILE:
+    case ENFILE:
+      advice = "allow more open files (ulimit -n)";
+      break;
     case EISDIR:
       advice = "name a file in that folder";
       break;

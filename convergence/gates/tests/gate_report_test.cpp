@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "convergence/gates/tests/made_gates.hpp"
+#include "convergence/results/output.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -90,6 +91,30 @@ TEST(GateReport, MarkdownHoldsEveryGateInItsOrderOfBadness) {
     EXPECT_EQ(std::ranges::count(line, '|'), 8 + in_id) << line;
   }
   EXPECT_THAT(text, Not(HasSubstr("more gates")));
+}
+
+/// Ids and reasons are text of strangers: no image, link, mention, sequence of a terminal or turned direction
+/// comes out of any file.
+TEST(GateReport, WhatAStrangerWroteStaysText) {
+  const std::string bad =
+      "![x](http://a.b/c) [y](javascript:z) <javascript:z> @user #12 www.a.b https://a.b &#64;user "
+      "`code` **b** \x1b[31m \u009b31m \u202etxet\u2066 \u2028 \u061c";
+  Gate gate = below("x", 1.0);
+  gate.id = gate.reason = bad;
+  std::vector<Judgement> judgements{judge(gate, solve_with("x", 4.0))};
+  const std::string markdown = gates_markdown(judgements);
+  EXPECT_THAT(markdown, Not(AnyOf(HasSubstr("[x]("), HasSubstr("http://"), HasSubstr("https://"))));
+  const std::string opening = R"(\[y\](javascript:z))";
+  EXPECT_THAT(markdown, HasSubstr(opening));
+  for (const char* markup : {"@user", "#12", "www.", "&#64;", " <", " `code", " **"}) {
+    EXPECT_THAT(markdown, Not(HasSubstr(markup)));
+  }
+  for (const std::string& text : {markdown, gates_junit(judgements), plain_text(gates_text(judgements))}) {
+    for (const char* steers : {"\x1b", "\u009b", "\u202e", "\u2066", "\u2028", "\u061c"}) {
+      EXPECT_THAT(text, Not(HasSubstr(steers)));
+    }
+    EXPECT_THAT(text, HasSubstr("u202etxet"));
+  }
 }
 
 TEST(GateReport, JsonHasEveryNumberOrAReason) {

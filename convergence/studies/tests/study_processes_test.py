@@ -163,6 +163,11 @@ class Study(unittest.TestCase):
         self.write('cells = [16, "32"]\n')
         self.run_study("bad", 2)
         self.assertIn("study.toml:2: cells[1]", self.text("bad.log"))
+        for key, values in (("load.momnt_ratio", "[0.5]"), ("load.moment_ratio", "[0.5, 1.5]")):  # no --set gave them
+            self.write(f'cells = [16, 32]\n[[vary]]\nkey = "{key}"\nvalues = {values}\n')
+            self.run_study("varied", 2)
+            self.assertIn(f"study.toml: {key} = ", self.text("varied.log"))
+            self.assertNotIn("--set", self.text("varied.log"))
         self.write("cells = [16, 32]\n", "nowhere.toml")
         self.run_study("missing", 2)
         self.assertIn("nowhere.toml", self.text("missing.log"))

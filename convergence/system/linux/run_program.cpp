@@ -15,6 +15,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -36,14 +38,90 @@ constexpr int kNotStarted = 127;
 constexpr std::string_view kTied = "--tied-to";
 /// Before the words of another program.
 constexpr std::string_view kStart = "start";
+/// The same of one that must leave no process behind.
+constexpr std::string_view kGuard = "guard";
 /// Between two looks whether a program has ended that says nothing.
 constexpr std::chrono::milliseconds kLook{5};
 
-std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program) {
+#ifdef __linux__
+/// Looks for descendants that are left, kLook apart: one that the kernel holds may outlast a SIGKILL.
+constexpr int kMostLooks = 1000;
+
+bool is_child(const std::filesystem::path& process) {
+  std::ifstream file(process / "stat");
+  const std::string stat{std::istreambuf_iterator<char>(file), {}};
+  const auto name_ends = stat.rfind(')');  // "pid (name) state parent"
+  return name_ends != std::string::npos && name_ends + 4 < stat.size() &&
+         std::atoi(stat.c_str() + name_ends + 4) == getpid();
+}
+
+/// Kills all that a subreaper started: a process whose parent ends becomes its child, so that in the end all
+/// are.
+void kill_descendants() {
+  for (int look = 0; look < kMostLooks; ++look) {
+    pid_t ended = 0;
+    do ended = waitpid(-1, nullptr, WNOHANG);
+    while (ended > 0);
+    if (ended < 0) return;  // there is none
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+      const pid_t process = std::atoi(entry.path().filename().c_str());
+      if (process > 0 && is_child(entry.path())) kill(process, SIGKILL);
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+/// Starts a program and ends as it does, or on SIGTERM, which the end of the parent sends too; all that the
+/// program started ends before.
+[[noreturn]] void guard(char** words, pid_t parent) {
+  sigset_t awaited;
+  sigset_t before;
+  sigemptyset(&awaited);
+  for (const int each : {SIGCHLD, SIGTERM}) sigaddset(&awaited, each);
+  std::signal(SIGCHLD, SIG_DFL);
+  sigprocmask(SIG_BLOCK, &awaited, &before);
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(EXIT_FAILURE);
+  const pid_t program = fork();
+  if (program == 0) {
+    setpgid(0, 0);
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    execvp(words[0], words);
+    _exit(kNotStarted);
+  }
+  int signal = program < 0 ? SIGTERM : 0;
+  int status = 0;
+  bool ended = false;
+  while (!ended && signal != SIGTERM) {
+    sigwait(&awaited, &signal);
+    int of_one = 0;
+    for (pid_t one = 0; (one = waitpid(-1, &of_one, WNOHANG)) > 0;) {
+      if (one != program) continue;
+      ended = true;
+      status = of_one;
+    }
+  }
+  kill_descendants();
+  if (!ended) _exit(kNotStarted);
+  if (WIFEXITED(status)) _exit(WEXITSTATUS(status));
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  std::signal(WTERMSIG(status), SIG_DFL);
+  sigemptyset(&before);
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  raise(WTERMSIG(status));
+  _exit(EXIT_FAILURE);
+}
+#endif
+
+std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program,
+                              bool guarded) {
   if (program.empty()) return words;
   std::vector<std::string> all{program, std::string(kTied), std::to_string(getpid())};
   const bool itself = words.front() == program;
-  if (!itself) all.emplace_back(kStart);
+  if (!itself) all.emplace_back(guarded ? kGuard : kStart);
   all.insert(all.end(), words.begin() + (itself ? 1 : 0), words.end());
   return all;
 }
@@ -67,7 +145,11 @@ ProgramEnd not_started(int error) {
 }  // namespace
 
 Program::Program(const std::vector<std::string>& words, const ProgramOptions& options) {
-  std::vector<std::string> all = tied(words, options.tied_by);
+  own_group_ = options.own_group;
+#ifdef __linux__
+  guarded_ = own_group_ && !options.tied_by.empty();
+#endif
+  std::vector<std::string> all = tied(words, options.tied_by, guarded_);
   std::vector<char*> arguments;
   for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -94,7 +176,6 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
   if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, options.folder.c_str());
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  own_group_ = options.own_group;
   if (own_group_) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   const int error = posix_spawnp(&process_, arguments[0], &actions, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
@@ -107,9 +188,18 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
 }
 
 Program::~Program() {
-  if (process_ > 0) kill(own_group_ ? -process_ : process_, SIGKILL);
+  stop();
   close_descriptor(output_);
   wait();
+}
+
+void Program::stop() {
+  if (process_ <= 0) return;
+  if (guarded_) {
+    kill(process_, SIGTERM);
+  } else {
+    kill(own_group_ ? -process_ : process_, SIGKILL);
+  }
 }
 
 void Program::close_descriptor(int& descriptor) {
@@ -182,7 +272,7 @@ ProgramEnd Program::wait_at_most(double seconds, std::size_t kept) {
   };
   while (!reap(false)) {
     if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) {
-      kill(own_group_ ? -process_ : process_, SIGKILL);
+      stop();
       reap(true);
       end_.code = -1;
       end_.trouble = fmt::format("took longer than {:g} s and was stopped", seconds);
@@ -194,7 +284,7 @@ ProgramEnd Program::wait_at_most(double seconds, std::size_t kept) {
   while (read_what_is_there(0)) {
   }
   // What it left behind could hold its output for ever.
-  if (own_group_ && group > 0) kill(-group, SIGKILL);
+  if (own_group_ && !guarded_ && group > 0) kill(-group, SIGKILL);
   close_descriptor(output_);
   return end_;
 }
@@ -206,6 +296,7 @@ ProgramEnd run_program(const std::vector<std::string>& words, const ProgramOptio
 void obey_tie(int& argc, char**& argv) {
   if (argc < 4 || argv[1] != kTied) return;
 #ifdef __linux__
+  if (argv[3] == kGuard) guard(argv + 4, std::atoi(argv[2]));
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != std::atoi(argv[2])) _exit(EXIT_FAILURE);  // it was gone before that
 #endif

@@ -192,6 +192,36 @@ class ThatBreak(WithFolder):
         left = [each for each in Path("/proc").glob("[0-9]*/environ") if marker in read(each)]
         self.assertEqual(left, [])
 
+    def test_leaves_no_process_behind(self):
+        """One that has left its group, session and parent, and ignores SIGTERM, ends with it: where it ends, takes too long,
+        is killed, and where this program is killed."""
+        daemon = ("import os, signal\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n"
+                  "        for each in (signal.SIGTERM, signal.SIGHUP): signal.signal(each, signal.SIG_IGN)\n"
+                  "        os.close(1), os.close(2)\n        open(os.environ['STARTED'], 'w').close()\n        time.sleep(1000)\n"
+                  "    os._exit(0)\nwhile not os.path.exists(os.environ['STARTED']): time.sleep(0.01)\n")
+        for end in ("", "time.sleep(1000)", "os.kill(os.getpid(), 9)", "open('hangs', 'w').close(); time.sleep(999)"):
+            with self.subTest(end=end):
+                started = self.folder / "started"
+                started.unlink(missing_ok=True)
+                program = self.program(READ + daemon + end, time_limit=2 if "1000" in end else 600)
+                words = [PROGRAM, "solve", SCENES / "paper.toml", "--set", "grid.cells=[16,16]", "--program", program]
+                solve = subprocess.Popen(words, env=os.environ | {"STARTED": str(started)}, stdout=subprocess.DEVNULL,
+                                         stderr=subprocess.DEVNULL)
+                if "hangs" in end:
+                    while not (self.folder / "hangs").exists():
+                        time.sleep(0.01)
+                    solve.kill()
+                self.assertNotEqual(solve.wait(), 0)
+                self.assertTrue(started.exists())
+                patience = time.monotonic() + 100
+                while (left := [each for each in Path("/proc").glob("[0-9]*/environ") if str(started) in read(each)]):
+                    if time.monotonic() > patience or "hangs" not in end:
+                        break
+                    time.sleep(0.01)
+                for each in left:
+                    os.kill(int(each.parent.name), 9)
+                self.assertEqual(left, [])
+
     def test_says_its_twist_in_rad(self):
         """Under the name that results have for rad; the name of before, which results have for the normalised twist, is
         understood where that is missing."""
