@@ -30,9 +30,9 @@ help: ## show this list
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
 
-# Packages that were missing the last time are looked for again.
+# Packages that setup installs and that were missing the last time are looked for again.
 configure: setup
-	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/not_built.txt ]; then cmake --preset release; fi
+	@if [ ! -f $(BUILD)/build.ninja ] || grep -qs 'make setup' $(BUILD)/not_built.txt; then cmake --preset release; fi
 
 # $(call build,targets): builds them, and says at the end what was not built.
 define build

@@ -1,6 +1,7 @@
 # Every dependency comes from the distribution; a missing one is named with its Debian/Ubuntu package.
 
 # slipstick_not_built(<what> <why, and what to install>): said at the end of configuring, and by make after every build.
+# Where it names `make setup`, make looks for it again, for setup installs it.
 function(slipstick_not_built what why)
   set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_NOT_BUILT "NOT BUILT: ${what}, because ${why}\n")
 endfunction()
@@ -62,7 +63,7 @@ option(SLIPSTICK_MPI "Solve one contact on several ranks: mpirun -n P slipstick 
 set(SLIPSTICK_MPIRUN OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
   OMPI_MCA_mpi_yield_when_idle=1)
 if(NOT found_mpi)
-  set(why "MPI was not found: install libopenmpi-dev openmpi-bin (or run `make setup`)")
+  set(why "MPI was not found: install libopenmpi-dev openmpi-bin, then run cmake --preset release")
   if(SLIPSTICK_MPI)
     message(FATAL_ERROR "SLIPSTICK_MPI: ${why}")
   endif()

@@ -59,6 +59,7 @@ Json cycle_json(const CycleState& state) {
           {"twist", state.twist},
           {"stick_ratio", state.stick_ratio},
           {"dissipated", state.dissipated},
+          {"dissipated_total", state.dissipated},
           {"tangent_stiffness", state.tangent_stiffness}};
 }
 

@@ -55,6 +55,11 @@ class History(ProgramTest):
             self.assertEqual((step["status"], step["cycle"]), ("converged", 1))
         self.assertEqual(steps[1]["name"], "back")
         self.assertAlmostEqual(steps[1]["moment_ratio"], -0.8, delta=4.5e-16)
+        totals = [step["dissipated_total"] for step in result["steps"]]
+        self.assertEqual(totals[-1], result["dissipated_total"])
+        self.assertEqual(result["dissipated_total"], result["history"]["dissipated"])
+        for k, step in enumerate(result["steps"]):  # the energy lost in a step is the growth of the total
+            self.assertAlmostEqual(step["dissipated"], totals[k] - (totals[k - 1] if k else 0), delta=1e-12 * totals[-1])
         for key in ("dissipated", "operator_applications"):
             total = math.fsum(step[key] for step in steps)
             self.assertAlmostEqual(history[key], total, delta=4.5e-16 * total)

@@ -97,7 +97,8 @@ def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: fl
 
     field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
     fields of a Solution are such arrays. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N),
-    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported. tolerance: the error that is
+    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported (`twist_angle` of a
+    result, not its normalised `twist`). tolerance: the error that is
     allowed, instead of the one derived from the mesh. pressure_given: the pressure is not judged. discrete: good only if
     it solves its own grid's problem. strict: good only in the scene's own units and signs. overrides as of solve().
     Relative paths in a scene that is no file begin nowhere: write them in full.
@@ -118,9 +119,12 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
     """Runs gates: numbers with bounds that they must keep (docs/guides/gate-your-ci.md).
 
     files: gate files. only: the ids of those to run. output: a folder that keeps finished solves (left out: none does).
-    results: the folder of the result files that gates name. jobs: solves at a time, 0: one a processor.
+    results: the folder of the result files that gates name. jobs: solves at a time, 0: one a processor. Throws
+    InputError where a file is missing; a gate that cannot be judged is one of the result, `refused`.
     """
     names = [files] if isinstance(files, (str, os.PathLike)) else list(files)
+    if missing := [os.fspath(name) for name in names if not os.path.isfile(name)]:
+        raise InputError(f"{', '.join(missing)}: cannot be read: no such file; allowed: files with gates")
     options = ["--only", *only] if (only := list(only)) else []
     if results is not None:
         options += ["--results", os.fspath(results)]

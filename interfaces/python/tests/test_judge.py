@@ -127,7 +127,9 @@ class FilesTest(unittest.TestCase):
         file.write_text(GATE.format(1e-7))
         self.assertFalse(slipstick.gate([file]).passed)
         self.assertRegex(slipstick.gate([file]).why, "^twist: .*1e-07")
-        self.assertIn("missing.toml: cannot be read", repr(slipstick.gate("missing.toml")))
+        for unread in ("missing.toml", self.folder, [file, "missing.toml"]):
+            with self.assertRaisesRegex(slipstick.InputError, "cannot be read"):
+                slipstick.gate(unread)
         file.write_text(GATE.format('"small"'))
         self.assertFalse(slipstick.gate(file).passed)
         with self.assertRaisesRegex(slipstick.InputError, "thrust"):
