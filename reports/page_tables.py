@@ -77,8 +77,8 @@ def index(pages):
                      _first_sentence(page["scene"]["text"]),
                      "✓ good" if verdict == "good" else Markup("{}: {}").format({"open": "○ open", "bad": "✗ bad"}[verdict], said),
                      *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error_with_parts(judged))),
-                     "–" if gap is None else sci(gap), f"{applications:.0f}", str(len(answer.get("steps") or [0])),
-                     "×".join(map(str, answer["cells"])), seconds(time)])
+                     "–" if gap is None else sci(gap), "–" if "program" in answer else f"{applications:.0f}",  # another program counts its own
+                     str(len(answer.get("steps") or [0])), "×".join(map(str, answer["cells"])), seconds(time)])
     return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or what mesh and steps leave open",
                   "gap / energy", "applica&shy;tions", "steps", "cells", "time, s"], body)
 
