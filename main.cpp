@@ -28,8 +28,8 @@ using Json = nlohmann::ordered_json;
 using Command = std::function<int(std::ostream&, Json&)>;
 
 void write_json(const std::string& path, const Json& result) {
-  // Names of files need not be UTF-8; JSON is.
-  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace);
+  // Names of files need not be UTF-8; JSON is. On standard output, perhaps a terminal, it is ASCII.
+  const std::string text = result.dump(2, ' ', path == "-", Json::error_handler_t::replace);
   if (path == "-") return slipstick::convergence::write_standard_output(text + "\n");
   slipstick::convergence::write_option_file("--json", path, text + "\n");
 }

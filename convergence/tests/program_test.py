@@ -112,6 +112,13 @@ class Program(ProgramTest):
         for option in ("--json", "--fields", "--figure"):
             self.run_program(*solve("paper", option, ""), code=2, says=(option, "names no file"))
 
+    def test_no_name_steers_a_terminal(self):
+        name = "a\u202eb\u2066c\x1b[31md\u009be\x7ff"
+        words = solve("paper", "--set", f"name={json.dumps(name)}")
+        for said in (self.run_program(*words), self.run_program(*words, "--json", "-")):
+            self.assertTrue(said.isascii() and said.replace("\n", "").isprintable(), said[:200])
+        self.assertEqual(json.loads(said)["name"], name)
+
     def test_figures_obey_no_environment_of_python(self):
         for module in ("numpy", "runpy", "style", "sitecustomize"):
             self.write(f"{module}.py", "raise SystemExit('a stranger was imported')")
