@@ -122,7 +122,7 @@ def choices(page):
             continue
         grids = f", the mean of {row['grids']} grids" if row.get("grids") else ""
         body.append([sci(row["wanted"]), "{} × {}".format(*row["cells"]) + grids, sci(row["tolerance"]),
-                     "–" if row.get("seconds") is None else seconds(row["seconds"]), ""])
+                     "–" if row.get("seconds") is None else seconds(row["seconds"]), row.get("remark", "")])
     return Table(["error wanted", "cells", "tolerance", "seconds, predicted", "remark"], body)
 
 

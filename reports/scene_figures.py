@@ -159,8 +159,8 @@ def cost(page, folder):
                f"{escape(METHODS.get(last['method'], (last['method'],))[0])}, {last['cells']} cells along the longer side, tolerance "
                f"{sci(last['tolerance'])}.")
     known = "against the exact answer" if not floor else (
-        f"at most: the distance from the value that the meshes tend to, and {percent(floor)} by which that itself may be off, with the "
-        "length of the steps. Nothing is known below, where it is grey")
+        f"at most the distance from the value that the meshes tend to, plus {percent(floor)} by which that value may be off itself (the "
+        "length of the steps included). Nothing is known below, where it is grey")
     return FigureEntry(message, f"A point for each method, mesh and tolerance; the line joins those that no other beats. The error is "
                        f"{known}. Solves that did not converge or were refused have no point.",
                        "Log-log points of error against time.", figure)
@@ -212,7 +212,7 @@ def operators(page, folder):
     axis.set(xscale="log", yscale="log", xlabel="cells along the longer side", ylabel="time of a whole solve, s")
     axis.set_xticks(sorted(set(column(table, "cells"))), [f"{n:g}" for n in sorted(set(column(table, "cells")))])
     axis.minorticks_off()
-    axis.legend()
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     if crossing["cells"] is None:
         message = f"Convolution against direct summation: {escape(crossing['remark'])}."
     else:

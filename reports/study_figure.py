@@ -102,14 +102,23 @@ def size_ticks(axis, series):
     axis.set_xticks(list(shown.values()), [str(cells) for cells in shown])
 
 
+def known_from(series, quantity):
+    """The uncertainty of the extrapolated value: nothing is known of smaller errors. Zero of an exact answer."""
+    return 0.0 if has_exact_answer(series, quantity) else np.nanmax(
+        [0.0, *(np.abs(found) for one in series for found in numbers(one.budget(quantity), "reference"))])
+
+
 def errors_panel(axis, series, quantity):
     low, high = range_of_errors(series, quantity)
     handles = draw_errors(axis, series, quantity)
     expected_guides(axis, series, quantity, 4.0 * high)
     size_ticks(axis, series)
-    legend = min(0.055 * len(handles), 0.4)  # of the height; half of it lies beside the points
-    decades = np.log10(8.0 * high / low)
-    axis.set_ylim(low / 2 * 10 ** (-0.6 * legend * decades), 8.0 * high)
+    legend = min(0.02 + 0.055 * len(handles), 0.45)  # of the height, below all points
+    decades = np.log10(16.0 * high / low)
+    axis.set_ylim(low / 2 * 10 ** (-legend / (1 - legend) * decades), 8.0 * high)
+    known = known_from(series, quantity)
+    if known > axis.get_ylim()[0]:
+        axis.axhspan(axis.get_ylim()[0], known, color=style.GREY, alpha=0.2, linewidth=0)
     axis.legend(handles=handles, loc="lower left", fontsize=6.8, handlelength=1.2, handletextpad=0.3,
                 labelspacing=0.25, borderaxespad=0.3, frameon=True, framealpha=0.85, edgecolor="none")
 
@@ -330,6 +339,8 @@ def details(series, quantities):
             if grids > 1 else ""
         sentences.append(f"Cells of {size.min() / unit:.3g} to {size.max() / unit:.3g} {name}.{bars} Lines are fitted over "
                          "the meshes that they span; pale points take no part. Orders have their 95 % interval.")
+        if any(known_from(series, path) for _, path in quantities):
+            sentences.append("Grey: below the uncertainty of the extrapolated value no error is known.")
     if any(one.tolerances for one in series):
         mesh = series[0].meshes[-1]
         sentences.append(f"Tolerances on a mesh of {study_result.across(mesh)} cells across.")

@@ -199,7 +199,7 @@ RunCommand add_report_command(CLI::App& app) {
       ->delimiter(',');
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
-      "convergence/scenes/rough_sphere.toml --want twist=1e-2 --output build/rough\n  slipstick report "
+      "convergence/scenes/ellipse.toml --want twist=1e-2 --output build/ellipse\n  slipstick report "
       "convergence/scenes/*.toml --quick --output "
       "build/gallery\nFinished solves are kept: repeating an "
       "interrupted command goes on from there.\nExit code 0: done; 1: a page says bad (not where it says "

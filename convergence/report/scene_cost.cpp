@@ -36,6 +36,7 @@ Json choices(const solver::Scene& scene) {
       for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
         if (plan.contains(key)) row[key] = plan[key];
       }
+      if (const std::string note = note_on(scene); !note.empty()) row["remark"] = note;
     } catch (const solver::InputError& error) {
       set_missing(row, "cells", error.what());
     }

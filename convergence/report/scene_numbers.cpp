@@ -167,7 +167,7 @@ void add_error(Json& row, const MeshError& mesh, double path) {
   std::string basis = mesh.basis;
   if (!exact && std::isnan(path)) {
     basis += "; " + kNoPath;
-  } else if (!exact && path > 0.0) {
+  } else if (!exact && path > kRounded * std::abs(mesh.error)) {
     basis = fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), basis, path);
   }
   row["basis"] = basis;

@@ -115,18 +115,6 @@ const std::string kNoFinerMesh =
     fmt::format("a mesh that would is finer than {} cells across the contact, or does not fit in memory",
                 kMaxCellsAcross);
 
-/// Surfaces whose errors the data do not cover.
-std::string note_on(const Scene& scene) {
-  for (const solver::Surface& surface : scene.surfaces) {
-    if (surface.shape == solver::Shape::roughness) {
-      return "the mesh was chosen by data of smooth contacts: this surface is rough";
-    }
-  }
-  return scene.surfaces.size() > 1
-             ? "the mesh was chosen by data of one round contact: here are several shapes"
-             : "";
-}
-
 Json account(const Scene& scene, const AccuracyTarget& target) {
   Json json{{"wanted", target.error}, {"quantity", accuracy_quantity(scene, target.of).name}};
   json["reached"] = nullptr;
@@ -181,6 +169,17 @@ Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
 }
 
 }  // namespace
+
+std::string note_on(const Scene& scene) {
+  for (const solver::Surface& surface : scene.surfaces) {
+    if (surface.shape == solver::Shape::roughness) {
+      return "the mesh was chosen by data of smooth contacts: this surface is rough";
+    }
+  }
+  return scene.surfaces.size() > 1
+             ? "the mesh was chosen by data of one round contact: here are several shapes"
+             : "";
+}
 
 Json accuracy_plan(const Scene& given, AccuracyTarget target) {
   if (given.model == solver::ModelChoice::exact) return plan_json(given);

@@ -29,6 +29,9 @@ AccurateAnswer solve_to_accuracy(const solver::Scene& scene, AccuracyTarget targ
 /// and the time of all.
 Json accuracy_plan(const solver::Scene& scene, AccuracyTarget target);
 
+/// Surfaces that the measured data, by which the first mesh is chosen, do not cover; empty: none.
+std::string note_on(const solver::Scene& scene);
+
 /// The account of an exact answer: its own uncertainty. Throws InputError where that is above the target.
 Json exact_accuracy(const solver::Scene& scene, const AccuracyTarget& target);
 

@@ -188,7 +188,7 @@ std::string verdict(double inputs, const Json& output, bool exact) {
   const std::string size = "mesh and steps leave " + percent(numerical);
   if (numerical <= kNegligible * inputs) return size + ": refinement would not reduce the uncertainty";
   if (inputs <= kNegligible * numerical)
-    return size + ": a finer mesh, or shorter steps, matter more than better inputs";
+    return size + ": a finer mesh or shorter steps matter more than better inputs";
   return size + ": both matter";
 }
 
