@@ -12,6 +12,8 @@
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/load_path.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -121,13 +123,16 @@ Json account(const Scene& scene, const AccuracyTarget& target) {
   return json;
 }
 
+const char* const kPathNotKnown =
+    "the length of the steps changes this number by an unknown amount: compare with a larger solver.substeps";
+
 /// One attempt: its answer, and what is known of its error.
 struct Attempt {
   SolvedScene answer;
   ReachedError reached;
   double uncertainty;  ///< of a mean over shifted grids; NaN of another answer
   Json grids;          ///< likewise; else null
-  double path;         ///< what the length of steps leaves open beside it
+  double path;         ///< what the length of steps leaves open beside it; NaN: not known
 
   /// NaN never is.
   bool within(double error) const {
@@ -145,8 +150,12 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
                  .uncertainty = NAN,
                  .grids = {},
                  .path = 0.0};
-    if (of == AccuracyOf::twist) made.path = path_of(made.answer.solution);
     made.reached = reached_error(scene, made.answer.solution, made.answer.result, of);
+    if (of == AccuracyOf::twist) {
+      made.path = path_of(made.answer.solution);
+    } else if (made.reached.how != "exact" && solver::depends_on_path(scene, solver::make_model(scene))) {
+      made.path = NAN;
+    }
     return made;
   }
   ShiftedMean mean =
@@ -209,7 +218,11 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     attempts.push_back(attempt_json(made, chosen, seconds));
     found.reached = made.within(target.error);
     if (found.reached) break;
-    target.path = made.path;
+    if (std::isnan(made.path) && made.reached.error <= target.error) {
+      stopped = kPathNotKnown;
+      break;
+    }
+    target.path = std::isnan(made.path) ? 0.0 : made.path;
     if (made.path > kPathPart * target.error) {
       if (!(made.path < target.error) && (scene.substeps >= kMaxSubsteps || std::isinf(made.path))) {
         stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps,
@@ -226,8 +239,11 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     }
   }
   if (!found.reached) found.accuracy["not_reached"] = stopped;
-  set_number(found.accuracy, "reached", made.reached.error + made.path, made.reached.why);
-  set_number(found.accuracy, "path", made.path, "more parts of the steps do not carry these loads");
+  const bool known = !std::isnan(made.path);
+  set_number(found.accuracy, "reached", made.reached.error + made.path,
+             known ? made.reached.why : kPathNotKnown);
+  set_number(found.accuracy, "path", made.path,
+             known ? "more parts of the steps do not carry these loads" : kPathNotKnown);
   found.accuracy["substeps"] = scene.substeps;
   found.accuracy.update(
       {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});

@@ -2,6 +2,7 @@
 """program_accuracy_test.py PROGRAM: what `slipstick solve --accuracy` reaches and says, and what --plan predicts."""
 
 import itertools
+import json
 import sys
 from pathlib import Path
 
@@ -123,6 +124,12 @@ class Plan(Solve):
         plan, attempt = self.solved("paper", f"{words} --plan")["plan"], self.solved("paper", words)["accuracy"]["attempts"][0]
         for key in ("cells", "tolerance"):
             self.assertEqual(plan[key], attempt[key])
+
+    def test_an_unknown_error_of_the_steps_is_never_reached(self):
+        self.run_program(*command("dissimilar", "--accuracy 1e-1 --accuracy-of stick_radius --json unknown.json"), code=1)
+        accuracy = json.loads(Path("unknown.json").read_text())["accuracy"]
+        self.assertEqual((accuracy["reached"], accuracy["path"]), (None, None))
+        self.assertIn("solver.substeps", accuracy["not_reached"])
 
     def test_holds_for_scenes_of_all_kinds(self):
         for scene in ("honed_surface", "unequal_patches", "fretting_force", "dissimilar"):
