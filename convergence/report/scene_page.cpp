@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/rounding_digits.hpp"
@@ -79,9 +80,18 @@ std::vector<HardCase> hard_cases(const RunSpec& base, const Scene& scene, const 
   return cases;
 }
 
-/// Whether the answer is more than the pressure that a program found.
-bool has_tractions(const Json& answer) {
-  return !answer.contains("program") || answer["program"]["fields"] != "pressure";
+bool is_long(const Scene& scene, const PageSize& size) {
+  return scene.steps.size() * static_cast<std::size_t>(scene.cycles) > size.long_history;
+}
+
+/// The same for a history, whose solves take as many times longer as it has steps.
+PageSize for_history(PageSize size, const Scene& scene) {
+  if (!is_long(scene, size)) return size;
+  size.most_cells /= 2;
+  size.most_study_cells /= 2;
+  size.method_cells /= 2;
+  size.operator_cells.resize(size.operator_cells.size() / 2);
+  return size;
 }
 
 /// The scene as the page answers it.
@@ -89,6 +99,23 @@ Scene on_finest_mesh(const RunSpec& base, const Scene& scene, const Meshes& mesh
   std::vector<std::string> overrides = base.overrides;
   if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
   return solver::read_scene(base.scene, overrides);
+}
+
+/// What the scene is, and what the page of a long history leaves out.
+Json described(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size) {
+  Json found = describe(scene, on_finest_mesh(base, scene, meshes), base.scene);
+  if (is_long(scene, size) && !meshes.given) {
+    found["summary"].push_back(
+        {"Left out", fmt::format("meshes of more than {} cells, of a history of more than {} "
+                                 "steps (a page without --quick has them)",
+                                 meshes.answer.back(), size.long_history)});
+  }
+  return found;
+}
+
+/// Whether the answer is more than the pressure that a program found.
+bool has_tractions(const Json& answer) {
+  return !answer.contains("program") || answer["program"]["fields"] != "pressure";
 }
 
 /// What `check` says of the field that a program wrote.
@@ -131,7 +158,8 @@ PageSize quick_page() {
           .method_cells = 32,
           .operator_cells = {8, 12, 16, 24},
           .repetitions = 2,
-          .finer_meshes = false};
+          .finer_meshes = false,
+          .long_history = 40};
 }
 
 PageSize usual_page() {
@@ -141,7 +169,8 @@ PageSize usual_page() {
           .method_cells = 64,
           .operator_cells = {8, 12, 16, 24, 32, 48},
           .repetitions = 3,
-          .finer_meshes = true};
+          .finer_meshes = true,
+          .long_history = std::numeric_limits<std::size_t>::max()};
 }
 
 PageSize full_page() {
@@ -173,7 +202,7 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     throw solver::InputError("--uncertain", "not beside solver.program; allowed: without it");
   const std::vector<UncertainInput> uncertain =
       uncertain_inputs(base.scene, base.overrides, request.uncertain);
-  const PageSize size = own ? request.size : for_program(request.size);
+  const PageSize size = for_history(own ? request.size : for_program(request.size), scene);
   const Meshes meshes = meshes_of(scene, size);
   solver::make_folder(folder);
   const fs::path fields = folder / "answer.h5";
@@ -181,7 +210,7 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
   const Json& answer = results.back();
   Json page;
   page["provenance"] = provenance(std::max(1, scene.threads));
-  page["scene"] = describe(scene, on_finest_mesh(base, scene, meshes), base.scene);
+  page["scene"] = described(base, scene, meshes, size);
   page["answer"] = answer;
   if (!own && has_tractions(answer)) page["check"] = check_program(base, scene, meshes, answer, fields);
   std::vector<Finding> findings{judge_answer(page)};

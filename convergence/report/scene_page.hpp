@@ -24,6 +24,7 @@ struct PageSize {
   std::vector<double> operator_cells;  ///< on which direct sums are timed beside convolution
   int repetitions;                     ///< of those
   bool finer_meshes;                   ///< hard variants of the scene are held to finer meshes
+  std::size_t long_history;            ///< of more steps than this all meshes are half as fine
 };
 PageSize quick_page();
 PageSize usual_page();

@@ -154,6 +154,16 @@ TEST_F(ScenePage, CountsTheLengthOfSteps) {
   }
 }
 
+/// The page of a long history takes coarser meshes, and says so.
+TEST_F(ScenePage, SaysWhatALongHistoryLeavesOut) {
+  PageSize size = tiny();
+  size.long_history = 1;
+  const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
+  const Json made = scene_page({{.scene = file("fretting_torsion")}, size}, folder_, pool);
+  EXPECT_EQ(made["answer"]["cells"], Json({32, 32})) << "no page has fewer";
+  EXPECT_EQ(made["scene"]["summary"].back()[0], "Left out");
+}
+
 /// All tractions and motions of a sphere in torsion are proportional to the friction; the limit is.
 TEST_F(ScenePage, SaysWhatInputsMakeOfNumbers) {
   const Json outputs = page(file("paper"), {}, {"contact.friction=10%"})["uncertainty"]["outputs"];
