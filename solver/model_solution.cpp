@@ -23,6 +23,15 @@ double equal_area_radius(const Grid& grid, Index cells) {
   return std::sqrt(static_cast<double>(cells) * grid.cell_area() / std::numbers::pi);
 }
 
+/// What counting adds to a contact at each side of its edge, in cells.
+double counted_by_side(const Scene& scene) {
+  const bool is_face = std::ranges::any_of(
+      scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
+  // Hertz's pressure is that at the centres of cells.
+  if (is_face || scene.pressure == PressureModel::hertz) return 0.0;
+  return scene.pressure == PressureModel::hertz_averaged ? kCutBySide : kCountedBySide;
+}
+
 /// The pressure and the contact under it.
 void describe_contact(ModelSolution& solution, const Scene& scene) {
   const Model& model = solution.model;
@@ -31,10 +40,8 @@ void describe_contact(ModelSolution& solution, const Scene& scene) {
   solution.normal_load = pressure.sum() * grid.cell_area() * model.force_unit();
   solution.peak_pressure = pressure.maxCoeff() * model.stress_unit;
   solution.approach = solution.normal.approach * model.length_unit;
-  const bool is_face = std::ranges::any_of(
-      scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
   solution.contact_cells = (pressure > 0.0).count();
-  solution.contact_area = counted_area(model.grid_in_m(), pressure, is_face);
+  solution.contact_area = counted_area(model.grid_in_m(), pressure, counted_by_side(scene));
   solution.contact_radius = measure_contact_radius(model, pressure) * model.length_unit;
   solution.contact_radius_counted = equal_area_radius(grid, solution.contact_cells) * model.length_unit;
 }
@@ -57,9 +64,10 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   const TangentialProblem& problem = loads.problem;
   const TangentialSolution& tangential = solution.tangential;
   solution.stick_cells = (tangential.stick > 0.0).count();
-  solution.stick_area = counted_area(model.grid_in_m(), tangential.stick);
+  const bool sticks = solution.stick_cells == solution.contact_cells;
+  solution.stick_area = sticks ? solution.contact_area : counted_area(model.grid_in_m(), tangential.stick);
   solution.stick_radius_counted = equal_area_radius(grid, solution.stick_cells) * model.length_unit;
-  if (solution.stick_cells == solution.contact_cells) {
+  if (sticks) {
     solution.stick_radius = solution.contact_radius;
     solution.stick_radius_note = "everything sticks";
   } else if (solution.detail != Detail::all) {
@@ -133,7 +141,9 @@ void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads
   describe_contact(solution, scene);
   describe_tractions(solution, loads, slip);
   const Model& model = solution.model;
-  solution.resolution = resolution(scene, solution.loads, model.grid, loads, solution.tangential.stick);
+  solution.resolution =
+      resolution(scene, solution.loads, model.grid, loads, solution.tangential, solution.contact_area);
+  solution.stick_area.uncertainty += solution.resolution.stick_area * model.grid_in_m().cell_area();
   solution.resolution.open.displacement *= model.length_unit;
   describe_energy(solution, loads);
 }

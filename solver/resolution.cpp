@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "solver/grid/counted_area.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
@@ -71,40 +72,72 @@ double open_twist(const Grid& grid, const LoadStep& loads, double limit_error) {
   const double limit = loads.limit.factor * moment;
   if (!std::isfinite(limit)) return 0.0;
   const double missing = limit - moment;
-  const double of_limit = limit_error * limit < missing ? -std::log1p(-limit_error * limit / missing) / 3.0
-                                                        : std::numeric_limits<double>::infinity();
+  // Far from the limit its error changes nothing.
+  const double of_limit = limit_error * limit < missing
+                              ? (std::log1p(-limit_error) - std::log1p(-limit_error * limit / missing)) / 3.0
+                              : std::numeric_limits<double>::infinity();
   return 0.5 * bound * (unresolved(missing) - unresolved(limit) + of_limit);
 }
 
-/// Relative errors over powers of the cell's size over the contact's radius. Set by exact answers of spheres,
-/// cones, powers and punches on 16 to 96 cells at 1e-6 to 1 - 1e-6 of the limit, so that 1 of 100 is further
-/// off.
+/// A pressure that is solved on the grid, or not. Set with kSharpEdge by exact answers of spheres, cones,
+/// powers and punches.
 struct MeshErrors {
-  double smooth;     ///< everywhere, over the square
-  double staircase;  ///< where slip is narrow, over the power 1.5
-  double wider;      ///< there too, over the first power: an average reaches beyond the contact
+  double smooth;  ///< everywhere, over the square of the cell's size over the contact's radius
+  double beyond;  ///< cells at each side of the edge that the contact has too many
 };
 MeshErrors mesh_errors(PressureModel pressure) {
-  if (pressure == PressureModel::hertz) return {.smooth = 1.2, .staircase = 1.6, .wider = 0.0};
-  if (pressure == PressureModel::hertz_averaged) return {.smooth = 1.7, .staircase = 0.65, .wider = 1.6};
-  return {.smooth = 0.26, .staircase = 0.65, .wider = 0.0};
+  if (pressure == PressureModel::hertz) return {.smooth = 1.2, .beyond = kCountedBySide};
+  if (pressure == PressureModel::hertz_averaged) return {.smooth = 1.7, .beyond = kCutBySide};
+  return {.smooth = 0.26, .beyond = 0.0};
 }
-/// Where the pressure does not fall to zero at the edge, over the first power.
-constexpr double kSharpEdge = 0.22;
-/// Under another law than Coulomb's, whose sum over the cells no normal load fixes: where it does not fall to
-/// zero at the edge, as above, and where it has a kink, over the power 1.5. Set by limit moments of spheres
-/// under Tresca's, capped and power laws on 32 to 200 cells.
-constexpr double kSharpLaw = 0.45;
+/// Where the friction does not fall to zero at the edge, over the first power.
+constexpr double kSharpEdge = 0.2;
+/// Under another law than Coulomb's, whose sum over the cells no normal load fixes, where it has a kink, over
+/// the power 1.5. Set by limit moments of spheres under capped and power laws on 32 to 200 cells.
 constexpr double kKink = 0.35;
-/// Width of the slip area, in cells, from which on it adds no error of its own.
-constexpr double kWideSlip = 4.0;
-/// Width of the stick area, in cells, likewise.
+/// Relative error of a bonded punch's stiffness over that of its area: it grows like the radius cubed on
+/// half-spaces, like its fourth power on a thin layer, and no faster on a thicker one.
+constexpr double kStiffnessByArea = 1.5;
+constexpr double kStiffnessByAreaOnLayer = 2.0;
+/// Cells across a slip ring within cells that stick, over the square of their traction over the bound:
+/// towards the edge a bonded traction grows like K/(2 pi d)^(1/2), in the mean over a cell 2 K/(2 pi
+/// h)^(1/2); a constant bound f holds a ring of pi/8 (K/f)^2 (Dugdale 1960), one that falls towards the edge
+/// less. By exact answers under Tresca's law 0.50.
+constexpr double kHiddenRing = std::numbers::pi * std::numbers::pi / 16.0;
+/// Width of the stick area, in cells, from which on it adds no error of its own.
 constexpr double kWideStick = 8.0;
+
+/// A contact's outline where it sticks.
+struct StickingEdge {
+  double part = 0.0;  ///< of the outline
+  double ring = 0.0;  ///< cells along it, times the square of the traction over the bound
+};
+StickingEdge sticking_edge(const Grid& grid, const ArrayXd& bound, const TangentialSolution& tangential) {
+  const auto along_edge = [&](const auto& value) {  // in the mean; 0 where it slips
+    return measure(grid, [&](Index cell) {
+      return bound[cell] == 0.0 ? 0.0 : tangential.stick[cell] > 0.0 ? 1.0 + value(cell) : 1.0;
+    });
+  };
+  const Area counted = along_edge([](Index) { return 1.0; });
+  const Area used = along_edge([&](Index cell) {
+    const double q1 = tangential.traction[cell];
+    const double q2 = tangential.traction[cell + grid.cells()];
+    return (q1 * q1 + q2 * q2) / (bound[cell] * bound[cell]);
+  });
+  return {counted.edge - 1.0, (used.edge - 1.0) * used.outline};
+}
+
+/// How far a stick area may be off, relative, whose cube of the radius may be off by so much.
+double by_cubed_radius(double error) {
+  const auto area = [](double cubed) { return std::cbrt(cubed * cubed); };
+  return std::max(1.0 - area(std::max(0.0, 1.0 - error)), area(1.0 + error) - 1.0);
+}
 
 }  // namespace
 
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
-                      const ArrayXd& stick) {
+                      const TangentialSolution& tangential, const CountedArea& contact_area) {
+  const ArrayXd& stick = tangential.stick;
   const ArrayXd& bound = loads.problem.friction_bound;
   const Area contact = measure(grid, [&](Index cell) { return bound[cell]; });
   if (contact.cells == 0.0) return {};
@@ -118,18 +151,33 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double cell1 = std::numbers::pi / 4.0 * contact.sides[0] / contact.cells;
   const double cell2 = std::numbers::pi / 4.0 * contact.sides[1] / contact.cells;
   const double cell = std::sqrt(0.5 * (cell1 * cell1 + cell2 * cell2));
-  // 1 where the pressure does not fall towards the edge, and soon little where it does.
+  // 1 where the friction bound does not fall towards the edge, and soon little where it does.
   const double edge = std::pow(std::min(1.0, contact.edge / contact.mean), 3);
   const MeshErrors errors = mesh_errors(scene.pressure);
-  const double narrow = std::clamp((kWideSlip - result.slip_width) / (kWideSlip - 1.0), 0.0, 1.0);
   const double small = std::clamp(1.0 - result.stick_width / kWideStick, 0.0, 1.0);
-  result.step = (errors.smooth + small) * cell * cell + kSharpEdge * edge * cell +
-                narrow * (errors.staircase * cell * std::sqrt(cell) + errors.wider * cell);
-  const double of_law =
-      scene.friction.is_coulomb() ? 0.0 : (kSharpLaw * edge + kKink * std::sqrt(cell)) * cell;
+  // Errors of the contact's area, and cells that counting adds to it under a pressure that is solved.
+  const double by_area = is_bare(scene) ? kStiffnessByArea : kStiffnessByAreaOnLayer;
+  const double of_area = by_area * contact_area.uncertainty / contact_area.counted;
+  const double sides = contact.sides[0] + contact.sides[1];
+  const double of_side = by_area * sides / contact.cells;
+  const StickingEdge at_edge = sticking_edge(grid, bound, tangential);
+  const double ring = slipping.cells / contact.outline;
+  const double narrow = at_edge.part + (1.0 - at_edge.part) / (1.0 + std::pow(ring, 4));
+  const bool is_coulomb = scene.friction.is_coulomb();
+  const double sharp = is_coulomb ? edge : 0.0;  // a wide ring hides the edge but that of a face
+  result.step = (errors.smooth + small) * cell * cell + sharp * kSharpEdge * cell +
+                std::max(narrow, sharp * sharp) * of_area + narrow * errors.beyond * of_side;
+  const double kink = is_coulomb ? 0.0 : kKink * cell * std::sqrt(cell);
+  const double beyond = is_coulomb ? 0.0 : edge * kCountedBySide;
+  const double of_law = is_coulomb ? 0.0 : beyond * of_side + edge * of_area + kink;
   const bool is_ratio = std::holds_alternative<MomentRatio>(step.torsion) && !brings_translation(step);
-  if (!is_ratio) result.step += of_law;
+  // A ratio of the mesh's own limit has the error of that area where it sticks, and a load where it slips.
+  result.step += is_ratio ? narrow * (beyond * of_side + kink) : (1.0 - narrow) * of_law + narrow * kink;
   const double limit_error = is_ratio ? 0.0 : (0.6 * errors.smooth * cell + 0.15 * edge) * cell + of_law;
+  if (slipping.cells > 0.0)
+    result.stick_area = sticking.cells * (by_cubed_radius(limit_error / (loads.limit.factor - 1.0)) +
+                                          (beyond + narrow * errors.beyond) * sides / contact.cells);
+  result.stick_area += kHiddenRing * at_edge.ring;
   const RigidMotion& sliding = loads.limit.sliding;
   const bool mesh_decides =
       sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;

@@ -11,15 +11,16 @@ namespace slipstick::solver {
 
 /// How well the mesh resolves a step, and the relative error that it leaves in the step's change of motion.
 /// Cells of size h on a contact of radius r, h/r in the root mean square of both axes, leave these parts:
-/// - everywhere 0.26 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
-/// - where slip is narrower than four cells, up to 0.65 (h/r)^1.5, since tractions rise towards a staircase
-/// of
-///   an edge as if nothing bounded them;
-/// - where the friction follows another law than Coulomb's, up to 0.45 h/r and 0.35 (h/r)^1.5, since no
-/// normal
-///   load fixes the sum of what friction carries;
-/// - where the pressure is Hertz's and not solved on the grid, more of both; averaged over cells it also
-///   widens a contact that sticks by most of a cell;
+/// - everywhere 0.26 (h/r)^2, more where the pressure is Hertz's and not solved on the grid, and up to
+///   0.2 h/r where the friction does not fall to zero at the edge;
+/// - where the contact sticks up to its edge, the error of its area A: it turns like a bonded punch, whose
+///   stiffness is 16/3 G a^3 (Reissner and Sagoci 1944), and on a thin layer, which shears evenly, grows like
+///   a^4. So the relative error is 3/2 dA/A, and on layers at most 2 dA/A, with the uncertainty that
+///   counted_area() states. The same at the edge of a face, whatever slips. A slip ring, whose tractions are known,
+///   hides the edge: one that is s cells wide leaves 1/(1 + s^4) of it;
+/// - where the friction follows another law than Coulomb's, no normal load fixes the sum of what it carries:
+///   its limit moment has the error of the counted area too, 3/2 dA/A where the bound does not fall towards
+///   the edge, and up to 0.35 (h/r)^1.5 where it falls;
 /// - where a moment is imposed, that of a stick area that shrinks below a cell: the load that is missing to
 ///   the limit tells the radius that the stick area should have, a_s^3 = 9 (M_lim - M)/(8 mu p), p the
 ///   pressure at the centre of sliding (Jaeger's superposition with a smooth pressure, dH = -p ds/s); the
@@ -27,12 +28,17 @@ namespace slipstick::solver {
 /// - where the load is no ratio of the mesh's own limit, what the error of that limit makes of the missing
 ///   load.
 /// Infinite where no cell is left to stick though one should, or the mesh's limit may lie below the load.
-/// Constants were set by exact answers of spheres, cones, powers and punches on 16 to 96 cells at loads of
-/// 1e-6 to 1 - 1e-6 of the limit.
+/// Constants that are no result of theory were set by exact answers of spheres, cones, powers and punches on
+/// 16 to 128 cells, on grids of any extent, at loads of 1e-6 to 1 - 1e-6 of the limit.
 ///
-/// stick: one value a cell of the whole grid. In the model's units (stresses over G, lengths over a cell).
+/// Stick areas are off by what counting leaves open, and besides (stick_area): by a slip ring within cells
+/// that stick, which their tractions tell; by the contact's own area where the bound does not fall towards
+/// the edge; and by what the error of the limit makes of a_s.
+///
+/// contact_area: in any unit. The rest in the model's units (stresses over G, lengths over a cell), of the
+/// whole grid.
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
-                      const Eigen::ArrayXd& stick);
+                      const TangentialSolution& tangential, const CountedArea& contact_area);
 
 /// Fills in which number the scene's steps up to the `step`-th leave open, and how far it may be off.
 void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step);

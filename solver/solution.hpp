@@ -30,6 +30,7 @@ struct Resolution {
   double stick_width = 0.0;
   double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
   double step = 0.0;        ///< relative: what the mesh leaves open of the step's own change
+  double stick_area = 0.0;  ///< cells, open besides what counting them leaves open
   Quantities open;          ///< besides, where the stick area is small next to the limit: rad and m
   Quantities mesh;          ///< what it leaves open of the whole history: over all its steps
   Quantities path;          ///< what the number of parts of its steps leaves open

@@ -50,7 +50,7 @@ struct GridWork {
 struct CountedArea {
   double counted = 0.0;
   double corrected = 0.0;
-  double uncertainty = 0.0;  ///< of the corrected one: 95 of 100 are closer
+  double uncertainty = 0.0;  ///< of the corrected one: 99 of 100 are closer
 };
 
 /// x1 and x2 of all cell centres: n1*n2 values each.

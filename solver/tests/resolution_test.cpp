@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "solver/grid/counted_area.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -23,17 +24,28 @@ LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio, doub
   return loads;
 }
 
+/// The resolution of tractions that reach half of the bound where the contact sticks, and all of it
+/// elsewhere.
+Resolution resolution_of(const Grid& grid, const LoadStep& loads, const ArrayXd& stick) {
+  const ArrayXd& bound = loads.problem.friction_bound;
+  TangentialSolution tangential{.stick = stick};
+  tangential.traction = ArrayXd::Zero(2 * grid.cells());
+  tangential.traction.head(grid.cells()) = bound * (1.0 - 0.5 * stick);
+  return resolution({}, {}, grid, loads, tangential, counted_area(grid, bound));
+}
+
 TEST(Resolution, WidthsOfACircleAndItsRingAreThoseOfTheCircles) {
   const Grid grid{80, 80, 1.0, 1.0};
   const LoadStep loads = disc_under_moment(grid, 36.0, 0.5);
   const ArrayXd stick = (cell_x1(grid).square() + cell_x2(grid).square() < 20.0 * 20.0).cast<double>();
-  const Resolution found = resolution({}, {}, grid, loads, stick);
+  const Resolution found = resolution_of(grid, loads, stick);
   EXPECT_NEAR(found.stick_width, 40.0, 4.0);  // a staircase follows a circle to a tenth
   EXPECT_NEAR(found.slip_width, 16.0, 1.6);
 }
 
-// All of it sticks under a constant pressure: what h/r leaves everywhere, at a sharp edge and where slip is
-// narrow, with h/r = pi/(2 n) along an axis of n cells. Which of them is the longer does not matter.
+// All of it sticks under a constant pressure: what h/r leaves everywhere and at a sharp edge, and 3/2 of what
+// counting leaves open of the area, with h/r = pi/(2 n) along an axis of n cells. Which of them is the longer
+// does not matter.
 TEST(Resolution, OfAStripHasBothAxesInTheMean) {
   const double cell = std::numbers::pi * std::sqrt((1.0 / (40 * 40) + 1.0 / (20 * 20)) / 8.0);
   for (const auto& [n1, n2] : {std::pair{40, 20}, {20, 40}}) {
@@ -42,8 +54,34 @@ TEST(Resolution, OfAStripHasBothAxesInTheMean) {
     loads.problem.friction_bound =
         (cell_x1(grid).abs() < 0.5 * n1 && cell_x2(grid).abs() < 0.5 * n2).cast<double>();
     loads.limit.factor = INFINITY;
-    const Resolution found = resolution({}, {}, grid, loads, loads.problem.friction_bound);
-    EXPECT_NEAR(found.step, 0.26 * cell * cell + 0.22 * cell + 0.65 * std::pow(cell, 1.5), 1e-12) << n1;
+    const Resolution found = resolution_of(grid, loads, loads.problem.friction_bound);
+    const CountedArea area = counted_area(grid, loads.problem.friction_bound);
+    EXPECT_NEAR(found.step, 0.26 * cell * cell + 0.2 * cell + 1.5 * area.uncertainty / area.counted, 1e-12)
+        << n1;
+    // Half of a constant bound hides a ring of pi^2/16 of a quarter of a cell along an outline of all sides.
+    const double outline = 0.25 * std::numbers::pi * 2.0 * (n1 + n2);
+    EXPECT_NEAR(found.stick_area, std::pow(std::numbers::pi / 8.0, 2) * outline, 1e-9) << n1;
+  }
+}
+
+// A disc that sticks up to its edge turns like a bonded punch. A slip ring hides the edge, the more the
+// wider.
+TEST(Resolution, OfADiscFallsWithTheWidthOfItsSlipRing) {
+  const Grid grid{80, 80, 1.0, 1.0};
+  const LoadStep loads = disc_under_moment(grid, 36.0, 0.5);
+  double last = std::numeric_limits<double>::infinity();
+  for (const double stick_radius : {36.0, 35.0, 33.0, 28.0}) {
+    const ArrayXd stick =
+        (cell_x1(grid).square() + cell_x2(grid).square() < stick_radius * stick_radius).cast<double>();
+    Scene scene;
+    scene.friction = FrictionLaw{};
+    scene.friction.kind = FrictionKind::tresca;
+    TangentialSolution tangential{.stick = stick};
+    tangential.traction = ArrayXd::Zero(2 * grid.cells());
+    const double step =
+        resolution(scene, {}, grid, loads, tangential, counted_area(grid, loads.problem.friction_bound)).step;
+    EXPECT_LT(step, last) << stick_radius;
+    last = step;
   }
 }
 
@@ -51,7 +89,7 @@ TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
   const Grid grid{20, 20, 1.0, 1.0};
   for (const double inner : {0.0, 5.0}) {  // the body turns about a point of the contact, or about none
     const LoadStep loads = disc_under_moment(grid, 9.0, 1.0 - 1e-9, inner);
-    EXPECT_TRUE(std::isinf(resolution({}, {}, grid, loads, ArrayXd::Zero(400)).open.twist)) << inner;
+    EXPECT_TRUE(std::isinf(resolution_of(grid, loads, ArrayXd::Zero(400)).open.twist)) << inner;
   }
 }
 

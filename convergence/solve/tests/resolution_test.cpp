@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <ostream>
 #include <random>
 
 #include "convergence/oracle/oracle.hpp"
@@ -56,6 +58,86 @@ TEST_P(Stated, CoversTheErrorOfALoadAndWarnsOfLargeOnes) {
       EXPECT_TRUE(warned || std::abs(json["twist_error"].get<double>()) < solver::kPoorlyResolved);
       EXPECT_FALSE(warned && ratio < 0.9);
     }
+  }
+}
+
+/// Settings of a scene on a grid of any extent, whose slip ring is a part of a cell or a few.
+struct NarrowRing {
+  const char* name;
+  const char* body;
+  std::vector<std::string> settings;
+};
+void PrintTo(const NarrowRing& at, std::ostream* out) { *out << at.name; }
+const NarrowRing kNarrowRings[] = {
+    {"sphere", "paper", {}},
+    {"cone", "cone", {}},
+    {"tresca", "paper", {"contact.friction_law=\"tresca\"", "contact.shear_strength=5e7"}},
+    {"capped", "capped_friction", {}},
+    {"power",
+     "paper",
+     {"contact.friction_law=\"power\"", "contact.friction_exponent=0.5", "contact.friction=1e4"}},
+    {"soft_layer", "coated_sphere", {"lower.layer.young_modulus=60e9"}},
+    {"hard_layer", "coated_sphere", {}},
+    {"rigid_base", "coated_sphere", {"lower.young_modulus=1e16", "lower.layer.thickness=5e-4"}},
+};
+class StatedOfNarrowRings : public testing::TestWithParam<NarrowRing> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, StatedOfNarrowRings, testing::ValuesIn(kNarrowRings),
+                         [](const auto& at) { return std::string(at.param.name); });
+
+/// Whether an area is within what its statement says of a circle.
+bool is_covered_area(const Json& area, double radius) {
+  const double off = area["corrected"].get<double>() - std::numbers::pi * radius * radius;
+  return std::abs(off) <= area["uncertainty"].get<double>();
+}
+
+// The twist is that of a bonded punch of the contact's cells, whose area depends on how the grid lies. With
+// the constants of a grid whose extent is the contact and two cells, every sixth to third was further off
+// than stated; under Tresca's law a ring within cells that stick is part of the stick area that is counted.
+TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
+  std::mt19937 random(53);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  std::vector<double> over_error;
+  int twists = 0;
+  int areas = 0;
+  for (int k = 0; k < 30; ++k) {
+    const double ratio = std::pow(10.0, -4.0 + 3.2 * part(random));
+    std::vector<std::string> settings = GetParam().settings;
+    settings.push_back(fmt::format("load.moment_ratio={}", ratio));
+    Scene scene = scene_of(GetParam().body, 24 + static_cast<int>(40.0 * part(random)), settings);
+    const double extent = 2.0 * find_oracle(scene).oracle->contact_radius * (1.05 + 0.55 * part(random));
+    scene.extent = {extent, extent};
+    const Json json = solve_scene(scene).result;
+    ASSERT_EQ(json["status"], "converged");
+    if (!is_covered(json, "twist_error")) ++twists;
+    if (!is_covered_area(json["contact_area"], json["exact"]["contact_radius"])) ++areas;
+    if (!is_covered_area(json["stick_area"], json["exact"]["stick_radius"])) ++areas;
+    over_error.push_back(json["resolved"]["uncertainty"].get<double>() /
+                         std::abs(json["twist_error"].get<double>()));
+  }
+  EXPECT_LE(twists, 1);
+  EXPECT_LE(areas, 1);  // of sixty
+  std::ranges::nth_element(over_error, over_error.begin() + 15);
+  EXPECT_LE(over_error[15], 10.0);  // no empty promise either
+}
+
+// The uncoated sphere of 200 GPa of which 0.36 % was stated, and that is 0.71 % off.
+TEST(StatedOfTheTwist, CoversAGridOfItsOwnExtent) {
+  Scene scene = scene_of("paper", 96, {"load.moment_ratio=0.00198802"});
+  scene.upper.young_modulus = scene.lower.young_modulus = 200e9;
+  scene.extent = {1.374288846263151e-3, 1.374288846263151e-3};
+  expect_covered(solve_scene(scene).result, "twist_error");
+}
+
+// A small moment in N m depends no more on the limit than its ratio does.
+TEST(StatedOfTheTwist, OfASmallMomentIsNotThatOfTheLimit) {
+  for (const char* law : {"coulomb", "tresca"}) {
+    Scene scene = scene_of("paper", 48,
+                           {"load.moment_ratio=0.001", fmt::format("contact.friction_law=\"{}\"", law),
+                            law[0] == 't' ? "contact.shear_strength=5e7" : "contact.friction=0.1"});
+    scene.steps[0].torsion = solver::Moment{0.001 * find_oracle(scene).oracle->moment_limit};
+    const Json json = solve_scene(scene).result;
+    expect_covered(json, "twist_error");
+    EXPECT_LT(json["resolved"]["uncertainty"].get<double>(), 0.1) << law;
   }
 }
 

@@ -24,11 +24,11 @@ TEST(CountedArea, AnEdgeHasTheSidesThatItHas) {
   EXPECT_DOUBLE_EQ(one.counted, 0.125);
   EXPECT_DOUBLE_EQ(all.counted, 30 * 0.125);
   EXPECT_NEAR((all.counted - all.corrected) / (one.counted - one.corrected), 22.0 / 4.0, 1e-12);
-  EXPECT_EQ(counted_area(grid, inside, true).corrected, all.counted);
+  EXPECT_EQ(counted_area(grid, inside, 0.0).corrected, all.counted);
 }
 
 /// Spheres on grids of any place and size: Hertz's radius and the exact stick radius (theory.md) are known.
-TEST(CountedArea, CoversExactAreasOfSpheresInNineteenOfTwenty) {
+TEST(CountedArea, CoversExactAreasOfSpheres) {
   constexpr double kStickRatio = 0.8135681261276495;  // at half of the limit moment: Eq. (4), Lubkin 1951
   std::mt19937_64 random(20261125);
   std::uniform_real_distribution<double> across(14.0, 60.0);
@@ -49,6 +49,6 @@ TEST(CountedArea, CoversExactAreasOfSpheresInNineteenOfTwenty) {
       corrected += (area.corrected - exact) / area.counted;
     }
   }
-  EXPECT_GE(close, 0.95 * 2 * kDraws);
+  EXPECT_GE(close, 0.985 * 2 * kDraws);
   EXPECT_LT(std::abs(corrected), 0.3 * counted);
 }
