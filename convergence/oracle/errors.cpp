@@ -253,8 +253,8 @@ FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
   return field_error(difference, size);
 }
 
-FieldError sharpened_error(const solver::Solution& solution, const ExactFields& exact) {
-  const std::vector<SharpenedCell> cells = sharpened(solution);
+FieldError sharpened_error(const std::vector<SharpenedCell>& cells, const solver::Solution& solution,
+                           const ExactFields& exact) {
   const Index count = solution.grid.cells();
   auto next = cells.begin();
   Norms off;
@@ -311,6 +311,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
   const solver::ThreadPool threads(solution.threads);
   const bool fields = solution.detail == solver::Detail::all;
   const ExactFields exact = fields ? exact_fields(oracle, solution.grid) : ExactFields{};
+  const Sharpened sharp = fields && oracle.shear ? sharpened(solution) : Sharpened{};
   return {
       .twist = relative_error(solution.twist_angle, oracle.twist_angle),
       .moment = relative_error(solution.moment, oracle.moment),
@@ -325,7 +326,8 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
       .traction =
           fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
-      .sharpened = fields && oracle.shear ? sharpened_error(solution, exact) : kUnknownField,
+      .sharpened = fields && oracle.shear ? sharpened_error(sharp.cells, solution, exact) : kUnknownField,
+      .kept = sharp.kept,
       .pressure = fields ? pressure_error(solution.pressure, exact.pressure) : kUnknownField,
   };
 }

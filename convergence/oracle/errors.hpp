@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "convergence/oracle/oracle.hpp"
@@ -47,6 +48,7 @@ struct Errors {
   double peak_pressure;
   TractionError traction;
   FieldError sharpened;  ///< of sharpened() tractions at cell centres
+  std::string kept;      ///< see Sharpened
   FieldError pressure;
 };
 
@@ -78,9 +80,15 @@ struct SharpenedCell {
 /// means: in the cells that the contact's edge or the stick front cuts they are off by h^(1/2). Towards the
 /// edge p^2 falls linearly, and towards the front, from inside, (f - |q|)^2 does, f the friction bound,
 /// whatever the contact's shape. So the quadratic that fits this square best in the whole cells beyond says
-/// what it is at the centres of the cut ones. Cells keep their numbers where too few whole cells are near,
-/// and at edges towards which the pressure rises (a punch's). Tractions keep their directions and stay within
-/// the bound of the pressure beside them.
-std::vector<SharpenedCell> sharpened(const solver::Solution& solution);
+/// what it is at the centres of the cut ones. All cells of an edge keep their numbers where the fit is
+/// doubtful: it changes their sum, though each is a mean; or it is further off, in whole cells that it leaves
+/// out, than what it changes. Cells keep theirs where too few whole cells are near, and at edges towards
+/// which the pressure rises (a punch's). Tractions keep their directions and stay within the bound of the
+/// pressure in their cell.
+struct Sharpened {
+  std::vector<SharpenedCell> cells;
+  std::string kept;  ///< which edges' cells keep their numbers, and why; empty: none
+};
+Sharpened sharpened(const solver::Solution& solution);
 
 }  // namespace slipstick::convergence

@@ -102,6 +102,7 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
   set_number(json, "dissipated_error", errors.dissipated, of_friction);
   json["traction_error"] = traction_error_json(errors.traction, of_friction);
   json["traction_error"]["sharpened"] = field_error_json(errors.sharpened, of_friction);
+  if (!errors.kept.empty()) json["traction_error"]["sharpened"]["kept"] = errors.kept;
   json["pressure_error"] = field_error_json(errors.pressure, reason);
   json["exact"] = exact_json(oracle);
 }

@@ -39,7 +39,7 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
     const double s2 = solution.slip[cell + cells];
     return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
-  const auto sharp = std::make_shared<const std::vector<SharpenedCell>>(sharpened(solution));
+  const auto sharp = std::make_shared<const std::vector<SharpenedCell>>(sharpened(solution).cells);
   const auto add_sharp = [&](const char* name, const Eigen::ArrayXd& solved, Index start, const auto& of) {
     add(name, [sharp, &solved, start, of](Index cell) {
       const auto found = std::ranges::lower_bound(*sharp, cell, {}, &SharpenedCell::cell);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """sharpened_test.py PROGRAM: fields whose square-root edges are read off are nearer to the exact ones, whatever the contact's
-law and load; they keep to the friction's bound; a punch's singular edge is left as it is."""
+law and load; they keep to the friction's bound; edges that are no root on these cells are left as they are."""
 
 import json
 import pathlib
@@ -35,6 +35,21 @@ class Sharpened(unittest.TestCase):
                      ("paper", "grid.cells=[200,200]", "upper.at=[3e-5,1e-5]", "grid.extent=[1.3e-3,1.3e-3]")):
             raw, sharp = errors(*case)
             self.assertLess(sharp, 0.5 * raw, case)
+
+    def test_is_no_worse_where_an_edge_is_no_root_on_these_cells(self):
+        def sphere(*more, radius=0.018, young=210e9):
+            return ("paper", f"upper.radius={radius}", f"upper.young_modulus={young}", *more)
+
+        tresca = ('contact.friction_law="tresca"', "contact.shear_strength=5e7")
+        for case in (sphere(*tresca, "grid.cells=[24,24]", "load.moment_ratio=0.94"),  # a stick area of few cells
+                     sphere("grid.cells=[48,48]", "load.moment_ratio=0.1"),  # a ring of 2 cells
+                     ("coated_sphere", "lower.layer.young_modulus=40e9", "lower.layer.thickness=6e-5", "grid.cells=[40,40]"),
+                     ("coated_sphere", "lower.layer.thickness=5e-5", "grid.cells=[64,64]", "load.moment_ratio=0.3"),
+                     ("cone", "grid.cells=[64,64]", "load.moment_ratio=0.91"),  # a tip in the stick area
+                     ("rounded_punch", "upper.flat_radius=6e-4", "grid.cells=[40,40]", "load.moment_ratio=0.2")):
+            error = solve(*case)["traction_error"]
+            self.assertLess(error["sharpened"]["l2"], 1.03 * error["l2"], case)
+            self.assertIn("kept", error["sharpened"], case)
 
     def test_falls_faster_than_the_first_order(self):
         for traction in ("constant", "smooth"):
