@@ -104,7 +104,7 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
             {"verdict", judgement.good ? "good" : "bad"},
             {"why", judgement.why}};
   if (judgement.law.empty()) {
-    set_missing(json, "law", "none of the laws that were tried explains it");
+    set_missing(json, "law", "none of the known laws explains it, or more than one");
   } else {
     json["law"] = judgement.law;
   }

@@ -85,6 +85,7 @@ class Fitter {
     start_is_free_ = start_is_free;
     LoopHypothesis best;
     best.cost = kInfinity;
+    best.residual = std::numeric_limits<double>::quiet_NaN();
     best.moment.assign(path_.moment.size(), std::numeric_limits<double>::quiet_NaN());
     for (const LoopParameters& parameters : around(family_.middle)) {
       const LoopHypothesis tried = at(path_, start, parameters);

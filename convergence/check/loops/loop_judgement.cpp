@@ -76,6 +76,45 @@ double noise_beside(const LoopPath& path, const LoopHypothesis& law) {
   return row_noise(path, error);
 }
 
+/// The family of a law: those that scale the exact curve are one.
+std::string family_of(const LoopHypothesis& law) {
+  const bool scales = law.name == "limit" || law.name == "stiffness" || law.name == "factor";
+  return scales ? "limit_and_stiffness" : law.name;
+}
+
+/// Root mean square distance of a law from the loop, less the part that noise adds.
+double misfit(const LoopPath& path, const LoopHypothesis& law, double noise) {
+  std::vector<double> error = law.moment;
+  for (std::size_t row = 0; row < error.size(); ++row) error[row] -= path.moment[row];
+  return without_noise(trimmed_mean(error), noise);
+}
+
+/// Residual of a law that explains the loop, over the tolerance. Rates of noisy rotations are off by percent.
+double explained(const LoopHypothesis& law) {
+  return law.name == "regularised" || law.name == "stribeck" || law.name == "viscous" ? 2.0 : 1.0;
+}
+
+/// Parameters, and the two numbers of a start that is not rest.
+std::size_t unknowns(const LoopHypothesis& law) {
+  const bool from_rest = law.start.shift == 0.0 && law.start.turned == 0.0;
+  return law.parameters.size() + (from_rest ? 0 : 2);
+}
+
+/// A law of another family that explains the loop about as well, with no more unknowns; null: there is
+/// none. noise: of the rows, by which both are off; 0 where the likeliest law is off by no more.
+const LoopHypothesis* find_rival(const LoopPath& path, const std::vector<LoopHypothesis>& laws,
+                                 const LoopHypothesis& likely, double noise) {
+  constexpr double kLessLikely = 30.0;  // chi squared
+  constexpr double kFurtherOff = 2.0;   // misfits, where it is not noise that makes them
+  for (const LoopHypothesis& law : laws) {
+    const bool is_other = family_of(law) != family_of(likely) && unknowns(law) <= unknowns(likely);
+    if (!is_other || !std::isfinite(law.cost)) continue;
+    const bool as_near = noise > 0.0 && misfit(path, law, noise) < kFurtherOff * misfit(path, likely, noise);
+    if (as_near || law.cost < likely.cost + kLessLikely) return &law;
+  }
+  return nullptr;
+}
+
 /// The verdict's words on the energy lost.
 std::string slip_text(const LoopJudgement& judgement) {
   if (!judgement.shows_slip()) {
@@ -133,24 +172,30 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
 }
 
 void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {
-  constexpr double kExplained = 0.5;  // residual of a law that explains the loop, over the exact law's
   judgement.fitted = fit_wrong_laws(path, contact);
   const LoopHypothesis& likely = *std::ranges::min_element(judgement.fitted, {}, &LoopHypothesis::cost);
   const double noise = noise_beside(path, likely) / judgement.largest_load.value;
-  const double off = without_noise(judgement.residual, judgement.noise);
-  const double likely_off = without_noise(likely.residual, noise);
   constexpr double kAtNoise = 1.1;  // residual over noise where noise alone makes it
   const bool at_noise = likely.residual <= kAtNoise * noise && likely.cost < judgement.exact.cost;
-  if (at_noise || (likely_off <= std::max(2.0 * tolerance, 0.02) && likely_off <= kExplained * off)) {
+  const double off = without_noise(likely.residual, noise);
+  const bool explains = at_noise || off <= explained(likely) * tolerance;
+  const LoopHypothesis* const rival =
+      explains
+          ? find_rival(path, judgement.fitted, likely, at_noise ? 0.0 : noise * judgement.largest_load.value)
+          : nullptr;
+  const std::string found = fmt::format("the {} is {} off the exact law in the mean", contact.words.load,
+                                        percent(judgement.residual));
+  const std::string left = percent(likely.residual);
+  if (explains && rival == nullptr) {
     judgement.law = likely.name;
-    judgement.why =
-        fmt::format("{} (the {} is {} off the exact law in the mean, {} off this one)", likely.sentence,
-                    contact.words.load, percent(judgement.residual), percent(likely.residual));
-    return;
+    judgement.why = fmt::format("{} ({}, {} off this one)", likely.sentence, found, left);
+  } else if (explains) {
+    judgement.why = fmt::format("{}; two of the known laws explain it: {} ({} off), or {} ({} off)", found,
+                                likely.sentence, left, rival->sentence, percent(rival->residual));
+  } else {
+    judgement.why = fmt::format("{} and follows none of the known laws; the nearest: {} ({} off)", found,
+                                likely.sentence, left);
   }
-  judgement.why = fmt::format(
-      "the {} is {} off the exact law in the mean, and none of the laws that were tried explains it",
-      contact.words.load, percent(judgement.residual));
 }
 
 }  // namespace slipstick::convergence

@@ -37,6 +37,24 @@ std::vector<double> scaled(const LoopPath& path, const LoopStart& start, const B
   return scaled(path, start, law, std::vector<double>(rows, limit), std::vector<double>(rows, stiffness));
 }
 
+/// Values at times that are earlier by a delay; before the first time the first value.
+std::vector<double> late(const std::vector<double>& time, const std::vector<double>& values, double delay) {
+  std::vector<double> found;
+  std::size_t next = 0;
+  for (const double now : time) {
+    while (next < time.size() && time[next] <= now - delay) ++next;
+    if (next == 0) {
+      found.push_back(values[0]);
+    } else if (next == time.size()) {
+      found.push_back(values.back());
+    } else {
+      const double part = (now - delay - time[next - 1]) / (time[next] - time[next - 1]);
+      found.push_back(std::lerp(values[next - 1], values[next], part));
+    }
+  }
+  return found;
+}
+
 bool is_near(double value, double wanted, double within) { return std::abs(value / wanted - 1.0) <= within; }
 
 /// Whether a stiffness over the exact one shows another unit, not another law.
@@ -101,10 +119,13 @@ class Families {
     rate_ = rates(path);
     for (const double r : rate_) fastest_ = std::max(fastest_, std::abs(r));
     add_springs();
+    add_bilinear();
     add_scaled();  // before rules: from a reversal on, twice the limit without enlarging is the same law
     add_rules();
     add_curves();
+    add_forgetful();
     add_rate_laws();
+    add_delay();
     add_drift();
   }
   const std::vector<LoopFamily>& list() const { return list_; }
@@ -154,6 +175,26 @@ class Families {
     }
   }
 
+  /// One element of Iwan's that slips, and a spring next to it.
+  void add_bilinear() {
+    const double rest = contact_.stiffness;
+    std::vector<double> spring = path_.twist;
+    for (double& value : spring) value *= rest;
+    const BranchLaw clipped{[rest](double t) { return std::clamp(rest * t, -1.0, 1.0); }};
+    list_.push_back(
+        {"bilinear",
+         {1.0, 1.0},
+         [=](const LoopPath& path, const LoopStart& start, const Parameters& p) {
+           return scaled(path, start, clipped, p[0], p[1]);
+         },
+         [=, this](const Parameters& p) {
+           return fmt::format(
+               "two springs, one of which slips at {:.2f} of the limit: {:.2f} of the exact stiffness stay",
+               p[1], p[0]);
+         },
+         spring});
+  }
+
   void add_rules() {
     const std::vector<Free> sets{Free::none, Free::stiffness, Free::limit};
     add("not_enlarged", {contact_.loading, BranchRule::not_enlarged},
@@ -198,6 +239,35 @@ class Families {
     const double rest = contact_.stiffness;
     add("exponential", {[rest](double t) { return std::copysign(-std::expm1(-rest * std::abs(t)), t); }},
         "an exponential approach to the limit in place of partial slip", sets);
+    add("hyperbola", {[rest](double t) { return rest * t / (1.0 + rest * std::abs(t)); }},
+        "a hyperbola towards the limit in place of partial slip", sets);
+  }
+
+  /// Laws of control and of structures: the stiffness follows from the moment in the direction of motion, and
+  /// reversals are forgotten.
+  void add_forgetful() {
+    const double rest = contact_.stiffness;
+    const auto by_moment = [&](const char* name, const char* sentence, const auto& curve,
+                               const auto& inverse) {
+      add(name,
+          {[=](double t) { return curve(rest * t); }, BranchRule::by_moment, rest,
+           [=](double m) { return inverse(std::min(m, 1.0 - 1e-12)) / rest; }},
+          sentence, {Free::none, Free::both});
+    };
+    by_moment(
+        "dahl", "Dahl's law, whose reversals are forgotten", [](double u) { return -std::expm1(-u); },
+        [](double m) { return -std::log1p(-m); });
+    by_moment(
+        "dahl", "Dahl's law with the exponent 2, whose reversals are forgotten",
+        [](double u) { return u / (1.0 + u); }, [](double m) { return m / (1.0 - m); });
+    by_moment(
+        "dahl", "Dahl's law with the exponent 1/2, whose reversals are forgotten",
+        [](double u) { return u < 2.0 ? u - 0.25 * u * u : 1.0; },
+        [](double m) { return 2.0 - 2.0 * std::sqrt(1.0 - m); });
+    by_moment(
+        "bouc_wen", "Bouc's and Wen's law with the exponent 2, whose reversals are forgotten",
+        [](double u) { return u < 0.0 ? u : std::tanh(u); },
+        [](double m) { return m < 0.0 ? m : std::atanh(m); });
   }
 
   void add_rate_laws() {
@@ -241,6 +311,35 @@ class Families {
     };
     regularised([](double r) { return std::tanh(r); }, std::atanh(0.5));
     regularised([](double r) { return std::clamp(r, -1.0, 1.0); }, 0.5);
+    list_.push_back({"stribeck",
+                     {1.0, 0.5, 0.2},
+                     [=, this](const LoopPath&, const LoopStart&, const Parameters& p) {
+                       constexpr double kBegins = 0.25;  // of the velocity at which friction has fallen
+                       std::vector<double> moment;
+                       for (const double r : rate_) {
+                         const double x = r / (p[2] * fastest_);
+                         moment.push_back(p[0] * std::tanh(x / kBegins) * (1.0 + p[1] * std::exp(-x * x)));
+                       }
+                       return moment;
+                     },
+                     [=, this](const Parameters& p) {
+                       return fmt::format(
+                           "friction falls with the rate, Stribeck's law: from {:.2f} of the limit to {:.2f}",
+                           p[0] * (1.0 + p[1]), p[0]);
+                     }});
+  }
+
+  void add_delay() {
+    const double branch = 1.0 / static_cast<double>(path_.turns.size() - 1);
+    list_.push_back({"delayed",
+                     {0.04},
+                     [=, this](const LoopPath& path, const LoopStart& start, const Parameters& p) {
+                       return late(path.time, follow(path, start, {contact_.loading}), p[0] * branch);
+                     },
+                     [=, this](const Parameters& p) {
+                       const double rows = p[0] * branch * static_cast<double>(path_.time.size() - 1);
+                       return fmt::format("the {} comes {:.2g} rows late", contact_.words.load, rows);
+                     }});
   }
 
   void add_drift() {

@@ -64,6 +64,27 @@ std::vector<double> harden(const LoopPath& path, const LoopStart& start, const B
   return moment;
 }
 
+/// Moments of BranchRule::by_moment.
+std::vector<double> flow(const LoopPath& path, const LoopStart& start, const BranchLaw& law) {
+  std::vector<double> moment(path.twist.size());
+  Reversal from{0.0, 0.0};
+  const auto at = [&](double twist, double sign) {
+    return sign * law.loading(law.inverse(sign * from.moment) + sign * (twist - from.twist));
+  };
+  const double first = path.turn_twist[1] >= path.turn_twist[0] ? 1.0 : -1.0;
+  const double before = -first * start.turned;
+  if (start.turned > 0.0) from = {before, at(before, -first)};
+  for (std::size_t turn = 0; turn + 1 < path.turns.size(); ++turn) {
+    const double sign = path.turn_twist[turn + 1] >= path.turn_twist[turn] ? 1.0 : -1.0;
+    for (std::size_t row = path.turns[turn]; row <= path.turns[turn + 1]; ++row) {
+      moment[row] = at(path.twist[row] + start.shift, sign);
+    }
+    const double end = path.turn_twist[turn + 1] + start.shift;
+    from = {end, at(end, sign)};
+  }
+  return moment;
+}
+
 /// The rotation at a reversal, from parabolas through some rows before and after it.
 double smoothed_turn(const std::vector<double>& twist, std::size_t turn, std::size_t window) {
   const auto end_of = [&](std::size_t from, std::size_t to) {  // of a parabola, at the turn
@@ -169,6 +190,7 @@ void find_turns(LoopPath& path) {
 
 std::vector<double> follow(const LoopPath& path, const LoopStart& start, const BranchLaw& law) {
   if (law.rule == BranchRule::no_slip_back) return harden(path, start, law);
+  if (law.rule == BranchRule::by_moment) return flow(path, start, law);
   std::vector<double> moment(path.twist.size());
   std::vector<Reversal> reversals;
   const double first = path.turn_twist[1] >= path.turn_twist[0] ? 1.0 : -1.0;

@@ -43,13 +43,15 @@ enum class BranchRule {
   masing,        ///< a branch is the first loading, enlarged twice; a closed loop is forgotten
   not_enlarged,  ///< a branch is the first loading in its own size
   no_slip_back,  ///< a branch has the stiffness at rest up to the largest moment so far: isotropic hardening
-  elastic        ///< moment and rotation stay on the curve of first loading
+  elastic,       ///< moment and rotation stay on the curve of first loading
+  by_moment      ///< a branch is a part of one curve, from its moment on: reversals are not remembered
 };
 
 struct BranchLaw {
-  std::function<double(double)> loading;  ///< from rest, odd
+  std::function<double(double)> loading;  ///< from rest, odd; for by_moment from loads against the motion on
   BranchRule rule = BranchRule::masing;
-  double stiffness = 0.0;  ///< of loading at rest, for no_slip_back
+  double stiffness = 0.0;                      ///< of loading at rest, for no_slip_back
+  std::function<double(double)> inverse = {};  ///< of loading, from -1 to 1, for by_moment
 };
 
 /// The law's moment in each row.
