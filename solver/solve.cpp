@@ -1,5 +1,7 @@
 #include "solver/solve.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -214,6 +216,17 @@ class Spent {
   std::array<double, kSummed.size()> sums_{};
 };
 
+/// A step that broke off in its k-th part says so, and no number of that part stands for its end.
+void break_off(ModelSolution& solution, const Step& step, std::size_t k, std::size_t parts) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  solution.message = fmt::format("{}, part {} of {}: {}", step.key, k, parts, solution.message);
+  solution.loads = step;
+  for (double* const number : {&solution.twist_angle, &solution.moment, &solution.limit.factor,
+                               &solution.elastic_energy, &solution.dissipated, &solution.work})
+    *number = kUnknown;
+  solution.displacement = solution.force = {kUnknown, kUnknown};
+}
+
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
 void solve_steps(const Scene& scene, const SolveOptions& options, const AfterStep& after_step) {
@@ -248,7 +261,9 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
     solution.cycle = static_cast<int>(k / of_cycle) + 1;
     const bool last = k + 1 == all;
     Spent spent(k == first ? solution.seconds.setup : 0.0);
+    std::size_t of_step = 0;
     for (const Step& part : parts) {
+      ++of_step;
       solution.seconds = {};
       const bool ends = last && &part == &parts.back();
       ContactState after;
@@ -259,6 +274,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
       previous = &part;
     }
     spent.put(solution);
+    if (of_step < parts.size()) break_off(solution, step, of_step, parts.size());
     if (path) solution.resolution.path = path->at(k);
     state_uncertainty(solution, scene, k);
     const bool failed = solution.status != Status::converged;

@@ -142,6 +142,7 @@ class Results(unittest.TestCase):
             self.solve("paper", "--set", f"solver.method={method}")
         self.solve("paper", "--set", "load.moment_ratio=0")
         self.solve("paper", "--set", "contact.friction=0", "--set", "load.moment_ratio=0")
+        self.solve("torsion_and_force", "--set", "solver.substeps=4", "--set", "solver.max_iterations=3", code=1)
         self.run_and_check("solve", SCENES / "honed_surface.toml")
 
     def test_histories(self):

@@ -112,7 +112,7 @@ const std::string kBroken = "the solve broke down, or there is no friction";
 /// How far the loads are from what the contact can carry, and how it would slide.
 Json limit_json(const solver::LimitLoad& limit) {
   Json json;
-  set_number(json, "factor", limit.factor, "no load is imposed");
+  set_number(json, "factor", limit.factor, std::isnan(limit.factor) ? kBroken : "no load is imposed");
   if (!std::isfinite(limit.factor)) return json;
   if (limit.centre) {
     json["centre"] = *limit.centre;
@@ -169,12 +169,13 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   set_number(json, "twist_angle", solution.twist_angle, "the solve broke down");
   set_number(json, "moment", solution.moment, "the solve broke down");
   json["moment_limit"] = solution.moment_limit;
-  set_number(json, "moment_ratio", solution.moment / solution.moment_limit, "the limit moment is zero");
+  set_number(json, "moment_ratio", solution.moment / solution.moment_limit,
+             solution.moment_limit > 0.0 ? "the solve broke down" : "the limit moment is zero");
   set_number(json, "twist", solution.shear_modulus * a * a * solution.twist_angle / solution.friction_force,
              "without friction the normalised twist has no scale");
   add_load_warning(json, solution);
-  json["force"] = solution.force;
-  json["displacement"] = solution.displacement;
+  set_pair(json, "force", solution.force, "the solve broke down");
+  set_pair(json, "displacement", solution.displacement, "the solve broke down");
   json["limit"] = limit_json(solution.limit);
   set_number(json, "elastic_energy", solution.elastic_energy, "the solve broke down");
   set_number(json, "dissipated", solution.dissipated, "the solve broke down");

@@ -19,19 +19,21 @@ std::string error_text(const Json& result, const std::string& key) {
                                                      : "";
 }
 
+/// NaN where the pair is not known.
+double size_of(const Json& pair) {
+  return pair.is_array() ? std::hypot(pair[0].get<double>(), pair[1].get<double>()) : std::nan("");
+}
+
 /// Forces and translations, where there are any.
 std::string translation_text(const Json& r) {
   const auto pair = [](const Json& value) {
     return fmt::format("[{}, {}]", number_text(value[0]), number_text(value[1]));
   };
-  const auto size = [](const Json& value) {
-    return std::hypot(value[0].get<double>(), value[1].get<double>());
-  };
   constexpr double rounding = 1e-12;  // of a sum over the cells, relative
   const double friction = r["friction_force"].get<double>();
   std::string text;
-  if (size(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
-  if (size(r["displacement"]) > 0.0) {
+  if (size_of(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
+  if (size_of(r["displacement"]) > 0.0) {
     text += text_line("displacement", pair(r["displacement"]) + " m" + error_text(r, "displacement_error"));
   }
   return text;
@@ -118,15 +120,17 @@ std::string steps_text(const Json& r) {
   const Json& steps = r["steps"];
   std::string text = fmt::format("  {:<16} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", "step", "W (N)",
                                  "M (N m)", "|F| (N)", "twist (rad)", "|delta| (m)", "lost (J)", "gap");
+  const auto size_text = [](const Json& pair) {
+    return pair.is_array() ? fmt::format("{:.4g}", size_of(pair)) : "-";
+  };
   const std::size_t first = steps.size() > most ? steps.size() - most : 0;
   if (first > 0) text += fmt::format("  ({} steps before)\n", first);
-  const auto size = [](const Json& pair) { return std::hypot(pair[0].get<double>(), pair[1].get<double>()); };
   for (std::size_t i = first; i < steps.size(); ++i) {
     const Json& step = steps[i];
-    text += fmt::format("  {:<16} {:>11} {:>11} {:>11.4g} {:>11} {:>11.4g} {:>11}  {}\n",
+    text += fmt::format("  {:<16} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n",
                         step["name"].get<std::string>(), short_text(step["normal_load"]),
-                        short_text(step["moment"]), size(step["force"]), short_text(step["twist_angle"]),
-                        size(step["displacement"]), short_text(step["dissipated"]),
+                        short_text(step["moment"]), size_text(step["force"]), short_text(step["twist_angle"]),
+                        size_text(step["displacement"]), short_text(step["dissipated"]),
                         short_text(step["certificate"]["gap"]));
   }
   return text + text_line("history", fmt::format("{} steps, {} J lost, gap/energy at most {}, {} operator "

@@ -9,6 +9,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/grid/own_rows.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/newton/nested_iteration.hpp"
 
 namespace slipstick::solver {
@@ -59,9 +60,11 @@ std::optional<double> given_of(const TangentialProblem& problem, Motion motion) 
 /// The tangential problem on one grid, as solve_nested() asks for it.
 class TangentialOnGrid {
  public:
-  TangentialOnGrid(const Grid& grid, TangentialProblem problem)
+  /// turns: onto itself under half a turn, as far as the friction bound does.
+  TangentialOnGrid(const Grid& grid, TangentialProblem problem, bool turns)
       : grid_(grid),
         problem_(std::move(problem)),
+        turns_(turns && is_half_turn_symmetric(grid, problem_.friction_bound)),
         motions_{MotionField(grid, 1.0), MotionField(grid, 0.0, 1.0), MotionField(grid, 0.0, 0.0, 1.0)} {}
 
   static BlockKernel kernel() { return tangential_kernel(); }
@@ -93,6 +96,7 @@ class TangentialOnGrid {
     for (MotionField& motion : motions_) motion = motion.packed(packing_);
     ConvexProgram program;
     program.energy_before = problem_.energy_before;
+    if (turns_) program.symmetrise = [this](ArrayXd& q) { symmetrise(q); };
     if (reference_.size() > 0) program.g = &reference_;
     const Conditions conditions(problem_);
     for (const Motion motion : conditions.imposed) {
@@ -120,14 +124,25 @@ class TangentialOnGrid {
     const double scale = std::isfinite(scaled) ? scaled : 1.0;  // no load: nothing to scale
     if (problem.moment) *problem.moment *= scale;
     if (problem.force) *problem.force = {scale * (*problem.force)[0], scale * (*problem.force)[1]};
-    return {coarse, problem};
+    return {coarse, problem, turns_};
   }
 
  private:
+  /// A packed field. Rounding is not its own image, and is no smaller after some steps of a history: without
+  /// translations nothing else takes out the force that it leaves.
+  void symmetrise(ArrayXd& q) const {
+    if (!grid_.ranks.several()) return turn_into_itself(q);
+    ArrayXd whole = packing_.unpacked(q);
+    share_rows(grid_, whole);
+    turn_into_itself(whole);
+    q = packing_.packed(whole);
+  }
+
   const MotionField& field(Motion motion) const { return motions_[static_cast<std::size_t>(motion)]; }
 
   Grid grid_;
   TangentialProblem problem_;
+  bool turns_;                          ///< its answer turns into itself under half a turn
   std::array<MotionField, 3> motions_;  ///< by Motion: (1, 0), (0, 1) and (-x2, x1)
   ArrayXd reference_;
   Packing packing_;  ///< of the contact
@@ -166,14 +181,16 @@ bool is_at_rest(const TangentialProblem& problem) {
          (problem.initial_displacement == 0.0).all() && (problem.start == 0.0).all();
 }
 
-/// All of the contact sticks, where there is one.
-TangentialSolution at_rest(const Grid& grid, const ArrayXd& bound) {
+/// No traction, and no motion but one that is given: all of the contact sticks, where friction is.
+TangentialSolution at_rest(const Grid& grid, const TangentialProblem& problem) {
   TangentialSolution solution;
+  solution.twist = problem.twist.value_or(0.0);
+  solution.displacement = problem.displacement.value_or(std::array{0.0, 0.0});
   solution.status = Status::converged;
   solution.part = 0.0;
   solution.traction.setZero(2 * grid.cells());
   solution.elastic_displacement = solution.slip = solution.traction;
-  solution.stick = (bound > 0.0).cast<double>();
+  solution.stick = (problem.friction_bound > 0.0).cast<double>();
   return solution;
 }
 
@@ -182,8 +199,7 @@ TangentialSolution at_rest(const Grid& grid, const ArrayXd& bound) {
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
                                            TangentialProblem problem, const CoulombOptions& options) {
   require_valid(problem, grid);
-  if ((problem.friction_bound == 0.0).all() || is_at_rest(problem))
-    return at_rest(grid, problem.friction_bound);
+  if ((problem.friction_bound == 0.0).all() || is_at_rest(problem)) return at_rest(grid, problem);
   NewtonOptions newton{.tolerance = options.tolerance,
                        .max_applications = options.max_applications,
                        .refine_multipliers = options.refine_motion};
@@ -198,8 +214,10 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                 .twist = problem.twist,
                                 .force = problem.force,
                                 .displacement = problem.displacement};
-  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton,
-                                      options.on_cells_known);
+  const bool turns = !grid.quadrant && !problem.force && !problem.displacement &&
+                     turns_into_itself(problem.initial_displacement) && turns_into_itself(problem.start);
+  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem), turns),
+                                      newton, options.on_cells_known);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

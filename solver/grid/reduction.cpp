@@ -14,6 +14,8 @@ using MutableComponent = Eigen::Map<Matrix>;
 
 /// Mirror images differ by this at most, relative: the rounding of a solve.
 constexpr double kImageRounding = 1e-13;
+/// What transforms leave of a field's largest value.
+constexpr double kTransformRounding = 1e-12;
 
 /// Equal up to rounding, with infinite values in the same places.
 template <typename A, typename B>
@@ -109,6 +111,24 @@ bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {
 }
 
 ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }
+
+bool turns_into_itself(const ArrayXd& field) {
+  const Index cells = field.size() / 2;
+  const auto apart = [](const auto& component) { return (component + component.reverse()).abs().maxCoeff(); };
+  return cells == 0 || std::max(apart(field.head(cells)), apart(field.tail(cells))) <=
+                           kTransformRounding * field.abs().maxCoeff();
+}
+
+void turn_into_itself(ArrayXd& field) {
+  const Index cells = field.size() / 2;
+  for (auto component : {field.head(cells), field.tail(cells)}) {
+    for (Index i = 0, image = cells - 1; i <= image; ++i, --image) {
+      const double half = 0.5 * (component[i] - component[image]);
+      component[image] = -half;
+      component[i] = half;
+    }
+  }
+}
 
 ArrayXd symmetrised(const Grid& grid, const ArrayXd& pressure) {
   if (grid.n1 != grid.n2) throw std::invalid_argument("the diagonal of a grid that is not square");

@@ -50,6 +50,11 @@ bool is_half_turn_symmetric(const Grid& grid, const Eigen::ArrayXd& field);
 /// p made its own image under half a turn, as it is up to the tolerance that it was solved to.
 Eigen::ArrayXd half_turn_symmetrised(const Eigen::ArrayXd& pressure);
 
+/// Whether a field of two components turns into itself under half a turn, (q1, q2)(-x) = -(q1, q2)(x), up to
+/// the rounding of a transform; and a field made so. An empty one is.
+bool turns_into_itself(const Eigen::ArrayXd& field);
+void turn_into_itself(Eigen::ArrayXd& field);
+
 /// p made even about the diagonal of its square grid: conjugate gradients leave it so up to their tolerance.
 Eigen::ArrayXd symmetrised(const Grid& grid, const Eigen::ArrayXd& pressure);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "solver/newton/load_balance.hpp"
@@ -21,6 +22,8 @@ struct ConvexProgram {
   /// An energy of the states before, whose errors this one inherits: where rounding keeps the gap from the
   /// tolerance over q.Kq/2, over this one will do.
   double energy_before = 0.0;
+  /// Gives a field the symmetry that the answer has, which raises no energy, for that is convex; empty: none.
+  std::function<void(Eigen::ArrayXd& q)> symmetrise = {};
 
   /// The part of the values [first, last) in the energy of q with the displacement u = K q; the imposed
   /// conditions' part, which is constant, left out.

@@ -33,6 +33,7 @@ void NewtonState<Set>::enter(ArrayXd& q, const Coefficients& multipliers) {
   multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
   Coefficients x = Coefficients::Zero(balance_.count());
   if (balance_.solve(q, x)) balance_.add(x, q);
+  if (program_.symmetrise) program_.symmetrise(q);
   set_.project(q);
   op_.apply_own(q, u_, packing_);
   energy_ = energy_of(q, u_);
@@ -128,6 +129,7 @@ void NewtonState<Set>::shorten(const ArrayXd& q, Trial& trial, double part) cons
 
 template <AdmissibleSet Set>
 bool NewtonState<Set>::accept(ArrayXd& q, Trial& trial, Safeguards& safeguards) {
+  if (program_.symmetrise) program_.symmetrise(trial.q);
   set_.project(trial.q);
   op_.apply_own(trial.q, trial.u, packing_);
   double after = energy_of(trial.q, trial.u);

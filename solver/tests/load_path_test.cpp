@@ -1,5 +1,7 @@
 #include "solver/load_path.hpp"
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 
 #include "solver/solve.hpp"
@@ -77,6 +79,20 @@ TEST_F(LoadPath, AStepInPartsEndsAsStepsThatAreWrittenOut) {
   EXPECT_NEAR(in_parts.displacement[0], written.displacement[0], 1e-12 * std::abs(written.displacement[0]));
   EXPECT_NEAR(in_parts.displacement[1], written.displacement[1], 1e-12 * std::abs(written.displacement[1]));
   EXPECT_GT(in_parts.dissipated, written.dissipated);  // of both parts, not of the last one
+}
+
+// A step that ends on its way has no answer: its numbers are not those of the part where it stopped.
+TEST_F(LoadPath, AStepThatBreaksOffHasNoAnswer) {
+  std::vector<Solution> steps;
+  SolveOptions options;
+  options.on_step = [&](const Solution& at) { steps.push_back(at); };
+  const Scene scene = read(kShortScene + push_and_twist(1), {"solver.substeps=8", "solver.max_iterations=3"});
+  solve(scene, options);
+  const Solution& last = steps.back();
+  ASSERT_EQ(last.status, Status::not_converged);
+  EXPECT_THAT(last.message, testing::HasSubstr("part 1 of 8"));
+  for (const double number : {last.twist_angle, last.moment, last.displacement[0], last.force[1], last.work})
+    EXPECT_TRUE(std::isnan(number));
 }
 
 // Slip under a push lies along it; the twist that follows turns it.

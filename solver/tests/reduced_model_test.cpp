@@ -328,6 +328,42 @@ TEST_F(HeightMapSymmetry, IsNotMadeUp) {
   EXPECT_THAT(left_out(bumpy), Not(Contains(kDiagonal)));
 }
 
+/// A ring on an odd number of cells has no quadrant. No force acts on it, and rounding leaves none, in a
+/// history of many parts neither.
+TEST_F(HeightMapSymmetry, LeavesNoForceWithoutTranslations) {
+  constexpr Index n1 = 52;
+  constexpr Index n2 = 53;
+  for (const double ring : {0.45, 0.75, 0.9}) {
+    std::ostringstream text;
+    text.precision(17);
+    for (Index i = 0; i < n1; ++i) {
+      for (Index j = 0; j < n2; ++j) {
+        const double radius =
+            std::hypot(static_cast<double>(2 * i + 1 - n1), static_cast<double>(2 * j + 1 - n2));
+        const double off = 0.5 * radius / static_cast<double>(n1) - 0.5 * ring;
+        text << (j == 0 ? "" : ",") << 1.5e-5 * off * off;
+      }
+      text << '\n';
+    }
+    Scene scene = paper_scene(0, 0.5);
+    scene.cells = {0, 0};
+    scene.surfaces.front() = {
+        .shape = Shape::height_map, .file = write("ring.csv", text.str()), .spacing = {1e-5, 1e-5}};
+    scene.lower = {6.8e9, 0.3};
+    scene.steps[0].normal = 0.1;
+    for (const double ratio : {-0.5, 0.7, 0.9}) {
+      for (const int parts : {1, 8}) {
+        scene.steps[0].torsion = MomentRatio{ratio};
+        scene.substeps = parts;
+        const ModelSolution solution = solve_in_model_units(scene);
+        EXPECT_EQ(solution.status, Status::converged) << solution.message;
+        EXPECT_THAT(left_out(solution), AllOf(Contains(kTranslations), Not(Contains(kQuadrant))));
+        EXPECT_LE(solution.certificate.force, 1e-15) << ring << ' ' << ratio << ' ' << parts;
+      }
+    }
+  }
+}
+
 class PressureFromAFile : public SceneFile {};
 
 /// A file's pressure need not have the mirrors of the surface that is said to cause it.
