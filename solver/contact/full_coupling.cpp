@@ -51,7 +51,8 @@ class Turns {
       : problem_(problem),
         opening_by_(elasticity, grid),
         complementarity_(elasticity, grid, problem.gap),
-        opening_(opening_by_(problem.traction)) {}
+        opening_(opening_by_(problem.traction)),
+        switches_(Eigen::ArrayXi::Zero(grid.cells())) {}
 
   CoupledSolution run() {
     double step = 1.0;
@@ -61,8 +62,7 @@ class Turns {
       if (!take(wanted) && !take(0.0)) return std::move(solution_);
       const double largest = std::ranges::max(last_gaps_);
       measure();
-      if (gap_ <= problem_.tolerance && (!finish() || gap_ <= problem_.tolerance))
-        return std::move(solution_);
+      if (gap_ <= problem_.tolerance && (!finish() || gap_ <= problem_.tolerance)) return settled();
       if (!(gap_ <= (1.0 - kProgress * step) * largest)) step *= 0.5;
       std::rotate(last_gaps_.begin(), last_gaps_.begin() + 1, last_gaps_.end());
       last_gaps_.back() = gap_;
@@ -109,19 +109,46 @@ class Turns {
     return converged();
   }
 
+  /// The approach is the mean of the displacement, weighted with the pressure: it takes what the last
+  /// tractions have changed.
+  CoupledSolution settled() {
+    const ArrayXd& pressure = solution_.normal.pressure;
+    solution_.normal.approach += (pressure * change_).sum() / pressure.sum();
+    return std::move(solution_);
+  }
+
   CoupledSolution unsettled() {
     solution_.normal.status = Status::not_converged;
     solution_.normal.message = fmt::format(
         "pressure and shear drive each other apart: complementarity gap {:.3g} after {} turns, asked for "
-        "{:.3g}; "
+        "{:.3g}{}; "
         "contact.coupling = \"pressure\" leaves the shear's effect on the pressure out",
-        gap_, solution_.turns, problem_.tolerance);
+        gap_, solution_.turns, problem_.tolerance, at_the_edge());
     return std::move(solution_);
+  }
+
+  /// A bound that does not fall to zero with the pressure jumps where a cell comes into contact. With its
+  /// shear such a cell may open, and without it close: then no state of it is an equilibrium.
+  std::string at_the_edge() const {
+    constexpr double kHardlyPressed = 1e-9;
+    constexpr double kJump = 0.01;
+    const ArrayXd& pressure = solution_.normal.pressure;
+    const double most = problem_.friction_bound(pressure).maxCoeff();
+    const bool jumps = problem_.friction_bound(kHardlyPressed * pressure).maxCoeff() > kJump * most;
+    const Index switched = (switches_ > 1).count();
+    if (!jumps || switched == 0) return "";
+    return fmt::format(
+        ", and {} cells at the edge come into contact and leave it again: each carries all of its friction "
+        "as "
+        "soon as it touches, which opens it, so that this mesh may have no answer",
+        switched);
   }
 
   /// To the opening of the next turn, and its guesses.
   void advance(double step) {
     acceleration_.advance(opening_, change_, step);
+    if (pressure_.size() > 0)
+      switches_ += ((pressure_ > 0.0) != (solution_.normal.pressure > 0.0)).cast<int>();
     pressure_ = std::move(solution_.normal.pressure);
     traction_ = std::move(solution_.tangential.traction);
     slips_ = solution_.tangential.stick == 0.0;
@@ -134,6 +161,7 @@ class Turns {
   ArrayXd opening_, change_;
   ArrayXd pressure_, traction_;  ///< guesses; empty in the first turn
   Eigen::Array<bool, Eigen::Dynamic, 1> slips_;
+  Eigen::ArrayXi switches_;  ///< how often each cell has come into contact or left it
   double gap_ = kNoGapYet;
   std::array<double, kLastGaps> last_gaps_{kNoGapYet, kNoGapYet, kNoGapYet};
   CoupledSolution solution_;

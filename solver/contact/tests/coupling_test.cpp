@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
@@ -212,6 +212,38 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     EXPECT_GT(solution.turns, 1);
     EXPECT_EQ(solution.contact_radius, solution.contact_radius_counted) << "no longer Hertz's pressure";
   }
+}
+
+/// The same loads again change nothing, and the approach holds the shear's part in the first step too.
+TEST(FullCoupling, OfAFewCellsHasTheSameApproachInItsNextStep) {
+  for (const auto& [load, extent] : {std::pair{1e-3, 3e-4}, {0.1, 5e-4}, {3.0, 1e-3}}) {
+    Scene scene = paper_scene(16, 0.5);
+    scene.cells = {16, 15};
+    scene.extent = {extent, extent};
+    scene.lower = {10e9, 0.1};
+    scene.friction = 0.3;
+    scene.coupling = Coupling::full;
+    scene.tolerance = 1e-12;
+    scene.steps[0].normal = load;
+    scene.steps.push_back(scene.steps.front());
+    std::vector<double> approach;
+    solve_in_model_units(scene, [&](const ModelSolution& at) { approach.push_back(at.normal.approach); });
+    ASSERT_EQ(approach.size(), 2U);
+    EXPECT_NEAR(approach[0] / approach[1], 1.0, 1e-11) << load;
+  }
+}
+
+/// A strength bounds a cell as much as soon as it touches. Where its shear then opens it no state is left,
+/// and that is said.
+TEST(FullCoupling, UnderAStrengthSaysThatCellsComeAndGo) {
+  Scene scene = paper_scene(24, 0.5);
+  scene.lower = {10e9, 0.1};
+  scene.friction.kind = FrictionKind::tresca;
+  scene.friction.shear_strength = 1e9;
+  scene.coupling = Coupling::full;
+  const ModelSolution solution = solve_in_model_units(scene);
+  EXPECT_EQ(solution.status, Status::not_converged);
+  EXPECT_THAT(solution.message, testing::HasSubstr("cells at the edge come into contact and leave it again"));
 }
 
 /// Friction that holds everything, or a push close to sliding, where shear follows pressure and pressure
