@@ -151,6 +151,7 @@ std::optional<std::array<double, 2>> sufficient_extent(Scene scene, const Model&
   scene.model = ModelChoice::automatic;
   scene.op = OperatorKind::dcfft;
   scene.method = Method::coulomb;
+  scene.friction.map.clear();  // of the scene's own grid; no friction enters
   std::array<double, 2> extent = extent_of(model);
   const double longer = std::max(extent[0], extent[1]);
   for (std::size_t i = 0; i < 2; ++i) {

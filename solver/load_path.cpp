@@ -111,10 +111,11 @@ double cells_across(const Scene& scene) {
   return 2.0 * std::sqrt(static_cast<double>((normal.pressure > 0.0).count()) / M_PI);
 }
 
-/// The scene on few cells; none where a file of pressures fixes the grid.
-std::optional<Scene> coarse_scene(const Scene& scene) {
+/// The scene on few cells, its map of friction left out; none where a file of pressures fixes the grid.
+std::optional<Scene> on_few_cells(const Scene& scene) {
   if (scene.pressure == PressureModel::file) return std::nullopt;
   Scene coarse = scene;
+  coarse.friction.map.clear();
   coarse.tolerance = kPathTolerance;
   coarse.op = OperatorKind::dcfft;
   coarse.model = ModelChoice::automatic;
@@ -140,6 +141,22 @@ std::optional<Scene> coarse_scene(const Scene& scene) {
     for (double& spacing : surface.spacing) spacing *= static_cast<double>(side);
   }
   coarse.cells = {};
+  return coarse;
+}
+
+/// The scene on few cells, its map of friction as means over them.
+std::optional<Scene> coarse_scene(const Scene& scene, const Model& model) {
+  std::optional<Scene> coarse = on_few_cells(scene);
+  if (!coarse || !model.friction.factors) return coarse;
+  const Grid grid = model.grid_in_m();
+  const Grid few = make_model(*coarse).grid_in_m();
+  std::array<double, 2> centre{};
+  if (find_height_map(scene.surfaces) != nullptr) {  // samples are cut off at its far ends
+    centre = {grid.x1(0) - 0.5 * grid.h1 - (few.x1(0) - 0.5 * few.h1),
+              grid.x2(0) - 0.5 * grid.h2 - (few.x2(0) - 0.5 * few.h2)};
+  }
+  coarse->friction.factors = model.friction.factors;
+  coarse->friction = resampled(std::move(coarse->friction), grid, few, centre);
   return coarse;
 }
 
@@ -196,7 +213,7 @@ std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* pre
 PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)
     : matters_(depends_on_path(scene, model)) {
   if (!matters_) return;
-  std::optional<Scene> coarse = coarse_scene(scene);
+  std::optional<Scene> coarse = coarse_scene(scene, model);
   broke_off_ = !coarse;
   if (broke_off_) return;
   shorten(*coarse, kMaxPathSteps);

@@ -217,9 +217,12 @@ Dimensionless Dimensionless::on_grid(const Grid& in_m, const std::array<double, 
 
 namespace {
 
-/// A field with the symmetries of the friction bound: the pressure, unless a map has others.
-ArrayXd carrying(const Model& model, const ArrayXd& pressure) {
-  return model.friction.factors ? model.friction.bound(pressure) : pressure;
+/// A field with the symmetries of the friction bound: the pressure, unless a map has others. A step before
+/// may have left tractions that are asymmetric like the map elsewhere.
+ArrayXd carrying(const Model& model, const ArrayXd& pressure, bool is_first) {
+  if (!model.friction.factors) return pressure;
+  const ArrayXd bound = model.friction.bound(pressure);
+  return is_first ? bound : (pressure > 0.0).select(bound, *model.friction.factors);
 }
 
 }  // namespace
@@ -228,10 +231,10 @@ bool moves_by_pressure(const Scene& scene, const Model& model) {
   return model.pressure_coupling && model.law->couples() && !scene.friction.is_frictionless();
 }
 
-bool has_translations(const Scene& scene, const Model& model, const ArrayXd& pressure) {
+bool has_translations(const Scene& scene, const Model& model, const ArrayXd& pressure, bool is_first) {
   if (scene.method != Method::coulomb) return false;
   return scene.model == ModelChoice::full || model.forces ||
-         !is_half_turn_symmetric(model.grid, carrying(model, pressure));
+         !is_half_turn_symmetric(model.grid, carrying(model, pressure, is_first));
 }
 
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
@@ -239,7 +242,11 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
   if (!reducible(scene)) return Reduction(model.grid);
   const ArrayXd occupied = before.size() > 0 ? ArrayXd(pressure.max(before)) : pressure;
   const bool mirrored = !model.pressure_coupling && !model.forces;
-  return mirrored ? Reduction(model.grid, carrying(model, pressure), occupied)
+  if (mirrored && model.friction.factors && before.size() > 0) {
+    const Reduction all(model.grid, carrying(model, pressure, false), ArrayXd::Ones(model.grid.cells()));
+    return all.quadrant() ? all : Reduction(model.grid, occupied);
+  }
+  return mirrored ? Reduction(model.grid, carrying(model, pressure, true), occupied)
                   : Reduction(model.grid, occupied);
 }
 

@@ -77,8 +77,8 @@ struct Model : Dimensionless {
 bool moves_by_pressure(const Scene& scene, const Model& model);
 
 /// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn
-/// and carries no force.
-bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure);
+/// and carries no force. is_first: no step before has left tractions.
+bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure, bool is_first);
 
 /// The part of the grid on which tractions are found under a pressure. before: a pressure whose tractions
 /// have to stay within it; empty: none.

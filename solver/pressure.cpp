@@ -71,7 +71,11 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
                             }});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(std::move(solution.pressure), normal_symmetry());
-  if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {
+  // Shear opens the gap with the symmetry of its friction.
+  const bool shear_turns = opening.size() == 0 || !model.friction.factors ||
+                           is_half_turn_symmetric(model.grid, *model.friction.factors);
+  if (scene.model != ModelChoice::full && !model.forces && shear_turns &&
+      is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
   }
   return solution;

@@ -163,7 +163,7 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const StickingEdge at_edge = sticking_edge(grid, bound, tangential);
   const double ring = slipping.cells / contact.outline;
   const double narrow = at_edge.part + (1.0 - at_edge.part) / (1.0 + std::pow(ring, 4));
-  const bool is_coulomb = scene.friction.is_coulomb();
+  const bool is_coulomb = loads.is_coulomb;
   const double sharp = is_coulomb ? edge : 0.0;  // a wide ring hides the edge but that of a face
   result.step = (errors.smooth + small) * cell * cell + sharp * kSharpEdge * cell +
                 std::max(narrow, sharp * sharp) * of_area + narrow * errors.beyond * of_side;

@@ -201,13 +201,14 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
                    const ContactState& before) {
   if (scene.method != Method::coulomb) require_centred(scene, pressure);
   LoadStep loads{};
+  loads.is_coulomb = model.friction.is_coulomb();
   TangentialProblem& problem = loads.problem;
   problem.friction_bound = model.friction.bound(pressure);
   if (!problem.friction_bound.isFinite().all()) refuse_infinite(scene);
   problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
   problem.start = before.traction;
   problem.energy_before = energy_before(model.friction, pressure, before);
-  const bool translations = has_translations(scene, model, pressure);
+  const bool translations = has_translations(scene, model, pressure, before.pressure.size() == 0);
   const LimitLoad unit =
       translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
   loads.moment_limit = translations ? unit.factor : moment_limit(model.grid, problem.friction_bound);

@@ -14,8 +14,9 @@ namespace slipstick::solver {
 /// A step's tangential problem, and what its contact can carry.
 struct LoadStep {
   TangentialProblem problem;
-  double moment_limit;  ///< over the cell area, without force
-  LimitLoad limit;      ///< of the loads that the step imposes
+  double moment_limit;     ///< over the cell area, without force
+  LimitLoad limit;         ///< of the loads that the step imposes
+  bool is_coulomb = true;  ///< the bound is mu p
 
   bool carried() const { return limit.factor > 1.0; }
 };

@@ -35,12 +35,14 @@ def value(text):
     return tomllib.loads("value = " + text)["value"]
 
 
+def path_of(row, folder):
+    path = pathlib.Path(row["scene"])
+    return path if path.is_absolute() else folder / path
+
+
 def scene_of(row, folder):
     """The scene's tables with what the row sets."""
-    path = pathlib.Path(row["scene"])
-    if not path.is_absolute():
-        path = folder / path
-    scene = tomllib.loads(path.read_text())
+    scene = tomllib.loads(path_of(row, folder).read_text())
     for assignment in row["set"]:
         key, _, text = assignment.partition("=")
         *tables, last = key.split(".")
@@ -78,8 +80,11 @@ def layer_of(scene):
     return [layer.get(f"{side}_compliance", 0.0) for side in ("normal", "tangential")]
 
 
-def friction_bound(contact, p):
-    """What friction carries in each cell under a scene's law."""
+def friction_bound(contact, p, folder):
+    """What friction carries in each cell under a scene's law; folder: of its file."""
+    if "friction_map" in contact:
+        factors = np.loadtxt(folder / contact["friction_map"], delimiter=",", ndmin=2)
+        return factors * friction_bound({k: v for k, v in contact.items() if k != "friction_map"}, p, folder)
     law, pressed = contact.get("friction_law", "coulomb"), np.maximum(p, 0.0)
     if law == "tresca":
         return np.where(p > 0.0, contact["shear_strength"], 0.0)
@@ -192,7 +197,7 @@ def moved(elastic, coupling, fields):
 
 def audit(row, folder):
     """What is measured of one case, by name."""
-    scene = scene_of(row, folder)
+    scene, beside = scene_of(row, folder), path_of(row, folder).parent
     found = {}
     row = row["written"]
     n, h = row["cells"], row["cell_size"]
@@ -202,7 +207,7 @@ def audit(row, folder):
     contact = p > 0.0
     area = h[0] * h[1]
     elastic = Elasticity(n, h, compliances(scene), layer_of(scene))
-    bound = friction_bound(scene["contact"], p)
+    bound = friction_bound(scene["contact"], p, beside)
     carried = bound.sum() * area
     load = row["normal_load"]
     steps = scene.get("step", [])

@@ -47,6 +47,30 @@ Weights interpolation(Index fine, Index coarse, bool mirrored, int parity) {
   return weights;
 }
 
+/// Row i: the parts of cell i of a row that each cell of another row covers; beyond the ends the outermost
+/// ones go on. ratio: of the sizes of a cell, the first row's over the other's; shift: of the first row's
+/// middle, in cells of the other.
+Weights coverings(Index to, Index from, double ratio, double shift) {
+  constexpr double kSamePlace = 1e-6;  // of a cell: positions that a file holds are rounded
+  const auto place = [&](Index i) {
+    const double from_middle = (static_cast<double>(i) - 0.5 * static_cast<double>(to)) * ratio + shift;
+    const double x = from_middle + 0.5 * static_cast<double>(from);
+    const double side = std::round(x);
+    return std::clamp(std::abs(x - side) <= kSamePlace ? side : x, 0.0, static_cast<double>(from));
+  };
+  Weights weights(to, from);
+  for (Index i = 0; i < to; ++i) {
+    const double low = place(i);
+    const double high = place(i + 1);
+    if (!(high > low)) weights.insert(i, low > 0.0 ? from - 1 : 0) = 1.0;
+    for (auto j = static_cast<Index>(low); static_cast<double>(j) < high; ++j) {
+      const auto left = static_cast<double>(j);
+      weights.insert(i, j) = (std::min(high, left + 1.0) - std::max(low, left)) / (high - low);
+    }
+  }
+  return weights;
+}
+
 Eigen::ArrayXd transform(const Weights& along1, const Weights& along2, const double* component) {
   const Eigen::Map<const Rows> in(component, along1.cols(), along2.cols());
   const Rows half = along1 * in;
@@ -78,6 +102,12 @@ Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::Ar
         transform(along1, along2, field.data() + c * fine.cells());
   }
   return result;
+}
+
+Eigen::ArrayXd means_on(const Grid& to, const Grid& from, const Eigen::ArrayXd& field,
+                        const std::array<double, 2>& centre) {
+  return transform(coverings(to.n1, from.n1, to.h1 / from.h1, centre[0] / from.h1),
+                   coverings(to.n2, from.n2, to.h2 / from.h2, centre[1] / from.h2), field.data());
 }
 
 Eigen::ArrayXd prolong_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field,

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 
 #include "solver/grid/grid.hpp"
 
-/// Fields from a grid to one of about half as many cells along each axis, over the same rectangle, and back.
+/// Fields from one grid to another.
 namespace slipstick::solver {
 
 /// Half as many cells along each axis (rounded up).
@@ -16,6 +17,11 @@ bool can_coarsen(const Grid& grid);
 
 /// Mean over each coarse cell; one or several components.
 Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field);
+
+/// Mean over each cell of any grid, whose centre stands at `centre` in the coordinates of `from`, in the unit
+/// of both; beyond its edge the field goes on as along it. One component.
+Eigen::ArrayXd means_on(const Grid& to, const Grid& from, const Eigen::ArrayXd& field,
+                        const std::array<double, 2>& centre = {});
 
 /// Linear interpolation between the coarse centres, continued beyond the outer ones as a constant and across
 /// a quadrant's axes by each component's parity.

@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
 
+#include "solver/grid/grid_transfer.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/to_dimensionless.hpp"
@@ -87,26 +87,18 @@ FrictionLaw with_factors(FrictionLaw law, const Grid& grid) {
           fmt::format("row {}, column {}: {}; allowed: zero or positive, finite", i + 1, j + 1, map(i, j)));
     }
   }
-  law.factors = std::make_shared<const ArrayXd>(map.reshaped<Eigen::RowMajor>());
+  if ((map == 1.0).all()) {
+    law.map.clear();
+  } else {
+    law.factors = std::make_shared<const ArrayXd>(map.reshaped<Eigen::RowMajor>());
+  }
   return law;
 }
 
 FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to,
                       const std::array<double, 2>& centre) {
   if (!law.factors) return law;
-  const auto nearest = [](double x, Index cells, double size) {
-    const double place = x / size + 0.5 * static_cast<double>(cells) - 0.5;
-    return std::lround(std::clamp(place, 0.0, static_cast<double>(cells - 1)));
-  };
-  ArrayXd factors(to.cells());
-  for (Index i = 0; i < to.n1; ++i) {
-    const Index row = nearest(to.x1(i) + centre[0], from.n1, from.h1);
-    for (Index j = 0; j < to.n2; ++j) {
-      factors[i * to.n2 + j] =
-          (*law.factors)[row * from.n2 + nearest(to.x2(j) + centre[1], from.n2, from.h2)];
-    }
-  }
-  law.factors = std::make_shared<const ArrayXd>(std::move(factors));
+  law.factors = std::make_shared<const ArrayXd>(means_on(to, from, *law.factors, centre));
   return law;
 }
 

@@ -52,12 +52,13 @@ struct FrictionLaw {
   FrictionLaw to_dimensionless(double stress_unit) const;
 };
 
-/// The law with the factors that its map holds for the cells of a grid. Throws InputError for a file that
+/// The law with the factors that its map holds for the cells of a grid, or without a map where all are 1.
+/// Throws InputError for a file that
 /// cannot be read, for factors that are negative or no numbers, and for more or fewer of them than cells.
 FrictionLaw with_factors(FrictionLaw law, const Grid& grid);
 
-/// A law with a map for one grid, with a map for another: each cell takes the factor of the nearest one.
-/// centre: of `to` in the coordinates of `from`, in the unit of both.
+/// A law with a map for one grid, with a map for another: each cell takes the mean over it. centre: of `to`
+/// in the coordinates of `from`, in the unit of both.
 FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to,
                       const std::array<double, 2>& centre = {});
 

@@ -117,16 +117,24 @@ class FrictionMap : public testing::Test {
   /// A map of the paper's 24 cells by a function of row and column.
   template <typename Factor>
   Scene with_map(const Factor& factor, Index rows = 24) {
-    std::ofstream stream(file_);
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < 24; ++j) stream << (j > 0 ? "," : "") << factor(i, j);
-      stream << '\n';
-    }
-    stream.close();
     Scene scene = paper_scene(24, 0.6);
     scene.tolerance = 1e-12;
+    return with_map(scene, factor, {rows, 24});
+  }
+  template <typename Factor>
+  Scene with_map(Scene scene, const Factor& factor, const std::array<Index, 2>& cells) {
+    std::ofstream stream(file_);
+    for (Index i = 0; i < cells[0]; ++i) {
+      for (Index j = 0; j < cells[1]; ++j) stream << (j > 0 ? "," : "") << factor(i, j);
+      stream << '\n';
+    }
     scene.friction.map = file_;
     return scene;
+  }
+  static void push_then_twist(Scene& scene) {
+    scene.steps.assign(2, scene.steps.front());
+    scene.steps[0].torsion = MomentRatio{0.0};
+    scene.steps[0].force = scene.steps[1].force = {40.0, 10.0};
   }
 
   std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "friction_map.csv";
@@ -137,6 +145,102 @@ TEST_F(FrictionMap, OfOneNumberIsACoefficient) {
   Scene scene = with_map([](Index, Index) { return 2.0; });
   scene.friction = 2.0 * paper::kFriction;
   expect_same_tractions(mapped, solved_under(scene));
+}
+
+TEST_F(FrictionMap, OfOnesChangesNoDigit) {
+  using Change = void (*)(Scene&);
+  const std::initializer_list<std::pair<const char*, Change>> changes{
+      {"as it is", [](Scene&) {}},
+      {"unlike bodies", [](Scene& scene) { scene.lower.young_modulus = 70e9; }},
+      {"full coupling",
+       [](Scene& scene) {
+         scene.lower.young_modulus = 70e9;
+         scene.coupling = Coupling::full;
+       }},
+      {"all of the model", [](Scene& scene) { scene.model = ModelChoice::full; }},
+      {"a force and steps", push_then_twist},
+      {"parts of steps",
+       [](Scene& scene) {
+         push_then_twist(scene);
+         scene.substeps = 2;
+       }},
+      {"an oblong grid",
+       [](Scene& scene) {
+         scene.cells = {27, 16};
+         push_then_twist(scene);
+       }},
+      {"off the centre",
+       [](Scene& scene) {
+         scene.surfaces.front().at = {1.3e-4, -0.4e-4};
+         scene.extent = {1.6e-3, 1.4e-3};
+       }},
+      {"a strength", [](Scene& scene) { scene.friction.kind = FrictionKind::tresca; }},
+      {"a rough sphere", [](Scene& scene) {
+         scene.surfaces.push_back(scene.surfaces.front());
+         scene.surfaces.back().shape = Shape::roughness;
+         scene.surfaces.back().roughness = {
+             .seed = 1, .hurst = 0.8, .longest = 4e-4, .shortest = 1e-4, .rms_slope = 1e-3, .period = 2e-3};
+         scene.extent = {1.4e-3, 1.4e-3};
+       }}};
+  for (const auto& [name, change] : changes) {
+    SCOPED_TRACE(name);
+    Scene scene = paper_scene(24, 0.6);
+    scene.friction.shear_strength = kStrength;
+    change(scene);
+    const Solution plain = solve(scene);
+    const Solution mapped = solve(with_map(
+        scene, [](Index, Index) { return 1; }, scene.cells));
+    EXPECT_EQ(plain.status, Status::converged);
+    EXPECT_TRUE((mapped.traction == plain.traction).all());
+    EXPECT_TRUE((mapped.slip == plain.slip).all());
+    EXPECT_EQ(mapped.twist_angle, plain.twist_angle);
+    EXPECT_EQ(mapped.resolution.absolute, plain.resolution.absolute);
+    EXPECT_EQ(mapped.resolution.step, plain.resolution.step);
+  }
+}
+
+TEST_F(FrictionMap, LeavesOpenWhatTheLengthOfItsStepsDoes) {
+  const auto factor = [](Index i, Index j) { return 0.4 + 0.05 * static_cast<double>((7 * i + 3 * j) % 17); };
+  Scene scene = paper_scene(37, 0.6);
+  scene.cells = {37, 31};
+  push_then_twist(scene);
+  scene = with_map(scene, factor, scene.cells);
+  const Solution few = solved_under(scene);
+  scene.substeps = 32;
+  const Solution many = solved_under(scene);
+  const double off = std::abs(few.twist_angle - many.twist_angle);
+  EXPECT_GT(off, 1e-3 * many.twist_angle);
+  EXPECT_GT(few.resolution.path.twist, off);
+  EXPECT_LT(few.resolution.path.twist, 10.0 * off);
+}
+
+TEST_F(FrictionMap, GivesPressureItsAsymmetryUnderFullCoupling) {
+  Scene scene = paper_scene(20, 0.5);
+  scene.lower.young_modulus = 70e9;
+  scene.coupling = Coupling::full;
+  scene.tolerance = 1e-12;
+  scene = with_map(
+      scene, [](Index i, Index j) { return 0.25 * static_cast<double>((3 * i + j) % 5); }, scene.cells);
+  const Solution solution = solved_under(scene);
+  EXPECT_GT((solution.pressure - solution.pressure.reverse()).abs().maxCoeff(),
+            1e-4 * solution.pressure.maxCoeff());
+  scene.model = ModelChoice::full;
+  expect_same_tractions(solved_under(scene), solution);
+}
+
+/// A load that grows and shrinks again leaves tractions that have the map's symmetry, not that of the cells
+/// that are left.
+TEST_F(FrictionMap, IsAsAsymmetricAfterALoadThatHasBeenLarger) {
+  Scene scene = paper_scene(24, 0.6);
+  scene.steps.assign(3, scene.steps.front());
+  scene.steps[1].normal = 0.4 * paper::kLoad;
+  scene.steps[2].normal = 0.3 * paper::kLoad;
+  scene.tolerance = 1e-12;
+  scene = with_map(
+      scene, [](Index i, Index) { return i < 21 ? 1.0 : 0.2; }, scene.cells);
+  const Solution solution = solved_under(scene);
+  scene.model = ModelChoice::full;
+  expect_same_tractions(solved_under(scene), solution);
 }
 
 TEST_F(FrictionMap, LeavesCellsWithoutFrictionWithoutTraction) {

@@ -156,5 +156,27 @@ TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
   }
 }
 
+/// A mean over any cells holds the integral, beyond the edge that of its outermost cells; over the same cells
+/// it is the field.
+TEST(MeansOn, OtherCellsHoldTheIntegral) {
+  const Grid from{13, 9, 0.5, 2.0};
+  const ArrayXd field = random_field(from.cells(), 3);
+  EXPECT_TRUE((means_on(from, from, field) == field).all());
+  for (const auto& [cells, size] : {std::pair{4, 13.0 * 0.5 / 4.0}, {5, 13.0 * 0.5 / 5.0}, {39, 0.5 / 3.0}}) {
+    const Grid to{cells, 3, size, 6.0};
+    EXPECT_NEAR(means_on(to, from, field).mean(), field.mean(), kRounding);
+  }
+  const Grid part{2, 3, 1.0, 2.0};
+  const ArrayXd moved = means_on(part, from, field, {1.25, -4.0});  // from cells (7, 1) on, two by one
+  for (Index i = 0; i < 2; ++i) {
+    for (Index j = 0; j < 3; ++j) {
+      const double expected =
+          0.5 * (field[(7 + 2 * i) * from.n2 + 1 + j] + field[(8 + 2 * i) * from.n2 + 1 + j]);
+      EXPECT_NEAR(moved[i * 3 + j], expected, kRounding);
+    }
+  }
+  EXPECT_EQ(means_on({1, 1, 1.0, 1.0}, from, field, {-100.0, 100.0})[0], field[8]);
+}
+
 }  // namespace
 }  // namespace slipstick::solver
