@@ -165,6 +165,10 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
               end_of(solution),
               open};
   }
+  if (solution.detail == Detail::all) {
+    add_slip_without_friction(solution.tangential, scene, model, loads.problem.friction_bound,
+                              solution.normal.pressure, before);
+  }
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 

@@ -238,4 +238,22 @@ TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& lo
   return solution;
 }
 
+void add_slip_without_friction(TangentialSolution& solution, const Scene& scene, const Model& model,
+                               const ArrayXd& bound, const ArrayXd& pressure, const ContactState& before) {
+  const auto free = ((pressure > 0.0) && (bound == 0.0)).replicate(2, 1);
+  if (!free.any()) return;
+  const Reduction part = traction_part(scene, model, pressure, before.pressure);
+  ArrayXd u = part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction)
+                                                         : solution.traction);
+  elasticity(scene, model, part).make(part.grid(), tangential_kernel())->apply(u, u);
+  u = part.expanded(std::move(u), torsion_symmetry());
+  if (const ArrayXd pressed = pressure_displacement(scene, model, pressure, before); pressed.size() > 0)
+    u += pressed;
+  const Index cells = pressure.size();
+  u.head(cells) -= solution.displacement[0];
+  u.tail(cells) -= solution.displacement[1];
+  u -= solution.twist * rotation_field(model.grid);
+  solution.slip = free.select(u, solution.slip);
+}
+
 }  // namespace slipstick::solver

@@ -36,4 +36,9 @@ TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& lo
                                   const std::function<void(int iteration, double change)>& progress,
                                   const TurnGoal& goal = {});
 
+/// The slip of the step in cells that are pressed and have no friction: no traction depends on it.
+void add_slip_without_friction(TangentialSolution& solution, const Scene& scene, const Model& model,
+                               const Eigen::ArrayXd& bound, const Eigen::ArrayXd& pressure,
+                               const ContactState& before);
+
 }  // namespace slipstick::solver

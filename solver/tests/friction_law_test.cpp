@@ -255,6 +255,46 @@ TEST_F(FrictionMap, LeavesCellsWithoutFrictionWithoutTraction) {
   EXPECT_GT((*solution.limit.centre)[0], 0.1 * solution.contact_radius);
 }
 
+/// Where nothing holds the surfaces they slip by all of their displacement less the body's motion.
+TEST_F(FrictionMap, LetsCellsWithoutFrictionSlip) {
+  Scene scene = paper_scene(24, 0.5);
+  scene.lower = {70e9, 0.33};
+  scene.steps.assign(2, scene.steps.front());
+  scene.steps[1].torsion = MomentRatio{0.6};
+  scene = with_map(
+      scene, [](Index i, Index) { return i < 12 ? 0.0 : 1.0; }, scene.cells);
+  std::vector<Solution> steps;
+  SolveOptions options;
+  options.on_step = [&](const Solution& step) { steps.push_back(step); };
+  solve(scene, options);
+  ASSERT_EQ(steps.size(), 2u);
+  const Model model = make_model(scene);
+  const Grid grid = model.grid_in_m();
+  const Index cells = grid.cells();
+  const double unit = model.length_unit / model.stress_unit;
+  const auto moved = [&](const BlockKernel& kernel, const ArrayXd& field) {
+    ArrayXd u(2 * cells);
+    elasticity(scene, model, Reduction(model.grid)).make(model.grid, kernel)->apply(field, u);
+    return ArrayXd(unit * u);
+  };
+  const ArrayXd pressed = moved(coupling_kernel(), steps[0].pressure);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const RigidMotion before =
+        k == 0 ? RigidMotion{}
+               : RigidMotion{steps[0].displacement[0], steps[0].displacement[1], steps[0].twist_angle};
+    ArrayXd slip = moved(tangential_kernel(),
+                         k == 0 ? steps[0].traction : ArrayXd(steps[1].traction - steps[0].traction));
+    if (k == 0) slip += pressed;
+    slip.head(cells) -= steps[k].displacement[0] - before.delta1;
+    slip.tail(cells) -= steps[k].displacement[1] - before.delta2;
+    slip -= (steps[k].twist_angle - before.twist) * rotation_field(grid);
+    const ArrayXd contact = (steps[k].pressure > 0.0).cast<double>().replicate(2, 1);
+    EXPECT_LE((contact * (steps[k].slip - slip)).abs().maxCoeff(), 1e-10 * slip.abs().maxCoeff());
+    EXPECT_TRUE(((1.0 - contact) * steps[k].slip == 0.0).all());
+    EXPECT_GT(norms(steps[k].slip).head(12 * 24).maxCoeff(), norms(steps[k].slip).tail(12 * 24).maxCoeff());
+  }
+}
+
 TEST_F(FrictionMap, TurnsWithTheScene) {
   const auto factor = [](Index i, Index j) {
     return 1.0 + 0.02 * static_cast<double>(i) + 0.01 * static_cast<double>(j);
