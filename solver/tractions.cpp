@@ -62,6 +62,11 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
   const std::string times = std::abs(factor - 1.0) > kNextTo ? fmt::format("{:.6g} times these", factor)
                                                              : fmt::format("these up to {:g}", kNextTo);
   const auto ratio = value_if<MomentRatio>(step.torsion);
+  if (ratio && loads.moment_limit == 0.0) {
+    throw InputError(file, step.key + ".moment_ratio", fmt::format("{}", *ratio),
+                     "0, since this contact carries no moment: its friction is zero wherever there is "
+                     "pressure, or in all cells but one");
+  }
   const bool turned = ratio && step.force == std::array<double, 2>{};
   const double torsion = loads.problem.moment.value_or(0.0) * model.grid.cell_area() * model.moment_unit();
   throw InputError(
@@ -217,6 +222,8 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   const double moment = problem.moment.value_or(0.0);
   const bool turned = translations && moment != 0.0 && problem.force == std::array<double, 2>{};
   loads.limit = turned ? under_moment(unit, moment) : limit_of(problem, model.grid);
+  const auto ratio = value_if<MomentRatio>(step.torsion);
+  if (ratio.value_or(0.0) != 0.0 && loads.moment_limit == 0.0) loads.limit.factor = loads.limit.carried = 0.0;
   problem.limit_factor = loads.limit.factor;
   return loads;
 }

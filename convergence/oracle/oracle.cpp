@@ -174,7 +174,9 @@ std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
   try {
     return torsion_history(scene);
   } catch (const std::domain_error& error) {
-    return no_theory(fmt::format("the contact on the layer is not one that is known here: {}", error.what()));
+    const char* const on_layer =
+        is_coated(scene) ? "the contact on the layer is not one that is known here: " : "";
+    return no_theory(on_layer + std::string(error.what()));
   }
 }
 

@@ -117,6 +117,12 @@ std::string beyond(const Certificate& certificate, const CertificateBounds& boun
   if (!is_certified(certificate.gap, certificate.rounding, bounds.gap)) {
     return fmt::format("gap / energy is {:.3g}, allowed: {:.3g}", certificate.gap, bounds.gap);
   }
+  if (certificate.gap > bounds.gap && !(certificate.energy_error <= bounds.gap)) {
+    return fmt::format(
+        "rounding keeps gap / energy at {:.3g}, and its bound of second order at {:.3g}, allowed: "
+        "{:.3g}",
+        certificate.gap, certificate.energy_error, bounds.gap);
+  }
   const struct {
     const char* name;
     double value;

@@ -295,6 +295,33 @@ TEST_F(FrictionMap, LetsCellsWithoutFrictionSlip) {
   }
 }
 
+/// A moment that nothing carries is refused, and none at all is not.
+TEST_F(FrictionMap, OrALawWithoutFrictionCarriesNoMoment) {
+  const auto one_cell = [](Index i, Index j) { return i == 15 && j == 10 ? 1.0 : 0.0; };
+  std::vector<Scene> scenes;
+  for (const FrictionKind kind : {FrictionKind::coulomb, FrictionKind::capped, FrictionKind::power}) {
+    scenes.push_back(scene_under(kind));
+    scenes.back().friction.coefficient = 0.0;
+  }
+  for (int k = 0; k < 5; ++k) {
+    Scene scene = k < 3   ? scenes[static_cast<std::size_t>(k)]
+                  : k < 4 ? with_map([](Index, Index) { return 0.0; })
+                          : with_map(one_cell);
+    scene.steps.push_back(scene.steps.front());
+    scene.steps[0].torsion = MomentRatio{0.0};
+    scene.steps[1].key = "step[1]";
+    EXPECT_THAT(complaint([&] { solve(scene); }),
+                AllOf(HasSubstr("step[1].moment_ratio"), HasSubstr("no moment")));
+    scene.steps.pop_back();
+    EXPECT_EQ(solve(scene).status, Status::converged);
+    scene.steps[0].torsion = Twist{1e-3};
+    const Solution turned = solve(scene);
+    EXPECT_EQ(turned.status, Status::converged) << turned.message;
+    EXPECT_EQ(turned.twist_angle, 1e-3);
+    EXPECT_NEAR(turned.moment, 0.0, 1e-12);
+  }
+}
+
 TEST_F(FrictionMap, TurnsWithTheScene) {
   const auto factor = [](Index i, Index j) {
     return 1.0 + 0.02 * static_cast<double>(i) + 0.01 * static_cast<double>(j);
