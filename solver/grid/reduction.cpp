@@ -14,7 +14,7 @@ using MutableComponent = Eigen::Map<Matrix>;
 
 /// Mirror images differ by this at most, relative: the rounding of a solve.
 constexpr double kImageRounding = 1e-13;
-/// What transforms leave of a field's largest value.
+/// Rounding of transforms, over the largest value of the field.
 constexpr double kTransformRounding = 1e-12;
 
 /// Equal up to rounding, with infinite values in the same places.

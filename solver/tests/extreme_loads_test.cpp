@@ -127,7 +127,7 @@ TEST_P(ExtremeLoads, NextToNoneAreLinear) {
 }
 
 // Dissimilar bodies with next to no friction slip nearly everywhere under their pressure alone: tractions
-// cannot be written to more digits than their gap asks for. What is called converged is within its tolerance,
+// cannot be written to more digits than their gap asks for. A converged result is within its tolerance,
 // by the gap or by its bound of second order.
 TEST(SmallFriction, BetweenDissimilarBodiesEndsAsItSays) {
   Scene scene = paper_scene(32, 0.5);
