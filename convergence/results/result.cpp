@@ -127,9 +127,11 @@ Json area_json(const solver::CountedArea& area) {
   return {{"counted", area.counted}, {"corrected", area.corrected}, {"uncertainty", area.uncertainty}};
 }
 
-/// An imposed twist of so many times the elastic one, under which no cell sticks, tells nothing but the limit
-/// moment.
-constexpr double kFarBeyondElastic = 10.0;
+/// An imposed twist of so many times the elastic one, which leaves so small a part of the limit moment, says
+/// no more than that moment. Of 60 contacts of like and unlike bodies, twisted to 0.02 to 0.999 of it, none
+/// is there.
+constexpr double kFarBeyondElastic = 15.0;
+constexpr double kNextToLimit = 1e-4;
 
 /// A twist that was hardly meant in rad. While nothing slips, twist times moment is twice the elastic energy.
 void add_load_warning(Json& json, const Solution& solution) {
@@ -137,9 +139,10 @@ void add_load_warning(Json& json, const Solution& solution) {
   const double a = solution.contact_radius;
   const double normalised = solution.shear_modulus * a * a / solution.friction_force;
   const double times = std::abs(solution.twist_angle * solution.moment) / (2.0 * solution.elastic_energy);
-  if (!imposed || solution.stick_cells > 0 || !(times > kFarBeyondElastic)) return;
+  const bool slides = std::abs(solution.moment) > (1.0 - kNextToLimit) * solution.moment_limit;
+  if (!imposed || !slides || !(times > kFarBeyondElastic)) return;
   json["load_warning"] = fmt::format(
-      "no cell sticks: the imposed twist of {:.6g} rad is {:.3g} times the one that the bodies take up by "
+      "all slides: the imposed twist of {:.6g} rad is {:.3g} times the one that the bodies take up by "
       "deforming; {}.twist is in rad, while a result's twist is G a^2 phi/(mu W), of which {:.6g} is {:.6g} "
       "rad",
       *imposed, times, solution.loads.key, *imposed, *imposed / normalised);
