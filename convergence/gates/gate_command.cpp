@@ -1,11 +1,14 @@
 #include "convergence/commands.hpp"
 
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 
 #include "convergence/gates/gate.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -61,7 +64,12 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
     return is_complete(result) ? 0 : 1;
   }
   if (!request.runs.merged.empty()) require_finished(gate_runs(gates, pool), pool);
-  const std::vector<Judgement> judged = run_gates(gates, pool);
+  std::vector<Judgement> judged = run_gates(gates, pool);
+  for (Judgement& judgement : judged) {
+    const std::string of_file = complaint_of_file(judgement.why, request.runs.overrides);
+    if (of_file.empty()) continue;
+    judgement.why = fmt::format("{}:{}: {}", judgement.gate.file.string(), judgement.gate.line, of_file);
+  }
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);

@@ -128,8 +128,7 @@ Json area_json(const solver::CountedArea& area) {
 }
 
 /// An imposed twist of so many times the elastic one, which leaves so small a part of the limit moment, says
-/// no more than that moment. Of 60 contacts of like and unlike bodies, twisted to 0.02 to 0.999 of it, none
-/// is there.
+/// no more than that moment. None of 120 contacts twisted to 0.02 to 0.999 of it is there.
 constexpr double kFarBeyondElastic = 15.0;
 constexpr double kNextToLimit = 1e-4;
 

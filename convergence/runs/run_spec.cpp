@@ -39,6 +39,14 @@ RunSpec changed(RunSpec run, const std::vector<std::string>& overrides) {
   return run;
 }
 
+std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line) {
+  constexpr std::string_view kSet = "--set";
+  if (!message.starts_with(kSet)) return "";
+  const std::string rest = message.substr(message.find_first_not_of(": ", kSet.size()));
+  const auto names = [&](const std::string& set) { return rest.starts_with(set.substr(0, set.find('='))); };
+  return std::ranges::any_of(command_line, names) ? "" : rest;
+}
+
 PreparedRun prepare_run(const RunSpec& spec) {
   PreparedRun run{.spec = spec,
                   .scene = seen_as(solver::read_scene(spec.scene, spec.overrides), spec.variant),

@@ -31,6 +31,10 @@ struct RunSpec {
 /// The same run with further overrides, which are the last to hold.
 RunSpec changed(RunSpec run, const std::vector<std::string>& overrides);
 
+/// What a message complains of in an override that a study's or gate's file gives, not the command line; else
+/// empty.
+std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line);
+
 /// A run whose scene has been read.
 struct PreparedRun {
   RunSpec spec;

@@ -1,12 +1,12 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/runs/run_options.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -35,15 +35,6 @@ int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& p
   result = run_shard(study_runs(study, pool.memory_limit()), shard, pool);
   text << shard_text(result);
   return is_complete(result) ? 0 : 1;
-}
-
-/// What is complained of in an override that the study file gives, not the command line; else empty.
-std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line) {
-  constexpr std::string_view kSet = "--set";
-  if (!message.starts_with(kSet)) return "";
-  const std::string rest = message.substr(message.find_first_not_of(": ", kSet.size()));
-  const auto names = [&](const std::string& set) { return rest.starts_with(set.substr(0, set.find('='))); };
-  return std::ranges::any_of(command_line, names) ? "" : rest;
 }
 
 int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostream& text, Json& result) {

@@ -57,6 +57,11 @@ class GateProgram(ProgramTest):
         self.gate(code=2)
         self.gate("missing.toml", code=2)
 
+    def test_blames_the_file_for_a_wrong_key_of_its_own(self):
+        self.write("gates.toml", gate("wrong", LOOSE).replace("'grid.cells'", "'grid.cels'"))
+        said = self.gate("gates.toml", code=2, says=("gates.toml:1: grid.cels = ", "grid.cells"))
+        self.assertNotIn("--set", said)
+
     def test_judges_exact_answers_of_scenes(self):
         def exact(scene, twist):
             return (f"[[gate]]\nid = 'exact'\nscene = '{SCENES / scene}.toml'\nquantity = 'twist'\nbasis = '16/3 G a^3'\n"
