@@ -16,8 +16,8 @@ namespace slipstick::solver {
 /// - where the contact sticks up to its edge, the error of its area A: it turns like a bonded punch, whose
 ///   stiffness is 16/3 G a^3 (Reissner and Sagoci 1944), and on a thin layer, which shears evenly, grows like
 ///   a^4. So the relative error is 3/2 dA/A, and on layers at most 2 dA/A, with the uncertainty that
-///   counted_area() states. The same at the edge of a face, whatever slips. A slip ring, whose tractions are known,
-///   hides the edge: one that is s cells wide leaves 1/(1 + s^4) of it;
+///   counted_area() states. The same at the edge of a face, whatever slips. A slip ring, whose tractions are
+///   known, hides the edge: one that is s cells wide leaves 1/(1 + s^4) of it;
 /// - where the friction follows another law than Coulomb's, no normal load fixes the sum of what it carries:
 ///   its limit moment has the error of the counted area too, 3/2 dA/A where the bound does not fall towards
 ///   the edge, and up to 0.35 (h/r)^1.5 where it falls;
