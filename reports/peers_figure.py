@@ -8,7 +8,7 @@ from results import column, rows, text, value
 from wording import sci
 
 QUANTITIES = {"normal_load_error": "normal load", "contact_radius_error": "contact radius",
-              "pressure": "pressure", "pressure_cell": "pressure, one cell", "traction_cell": "traction, one cell",
+              "pressure": "pressure", "pressure_cell": "pressure, one cell", "traction_cell": "traction, one cell", "tractions_inside": "tractions, inside",
               "moment_error": "moment", "force": "tangential force",
               "twist": "twist", "tractions": "tractions", "friction": "friction coefficient",
               "friction_bound": "friction bound", "slip_direction": "slip direction", "gap": "gap of Coulomb’s law"}

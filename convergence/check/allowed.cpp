@@ -20,6 +20,10 @@ constexpr double kOtherDraws = 2.0;
 /// square root misses up to 4/pi^2 h^2/a^2 at the contact's edge (Poisson's summation, nearest images), about
 /// 1/n with the stick area's edge; two such sums are compared.
 constexpr double kQuadrature = 2.0;
+/// The same of a bound that ends in a step, times n^(3/4): twice the spread of a sum over the cells whose
+/// centres lie in a circle, 0.7 of the root of the radius in cells for 1 (Kendall 1948), and 3/2 of that for
+/// r.
+constexpr double kEndsInStep = 1.5;
 /// Degrees between slip and traction that change no result noticeably.
 constexpr double kUnseenAngle = 0.1;
 /// Gap over energy that the mesh may cause where the field's cells are constant: there the iteration alone
@@ -103,7 +107,7 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   Allowed allowed = allowed_anyway(e);
   if (tolerance) {
     allowed.normal = allowed.moment = allowed.force = allowed.pressure = allowed.motion = allowed.tractions =
-        allowed.friction = *tolerance;
+        allowed.inside = allowed.friction = *tolerance;
     allowed.friction_bound = std::max(kFrictionDigits, *tolerance - kFrictionDigits);
     allowed.direction = kDegreesInARadian * *tolerance;
     allowed.gap = allowed.discrete_gap + gap_of_tolerance(e, *tolerance);
@@ -112,28 +116,33 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   const auto by_chance = [&](double Deviation::*part) {
     return kOtherDraws * (y.noise.*part + y.rounding.*part);
   };
-  const double quadrature = kQuadrature / static_cast<double>((e.contact.pressure > 0.0).count());
+  const auto cells = static_cast<double>((e.contact.pressure > 0.0).count());
+  const bool step = e.scene.friction.kind == solver::FrictionKind::tresca;
+  const double quadrature = kQuadrature / cells;
+  const double of_moment = step ? kEndsInStep * std::pow(cells, -0.75) : quadrature;
   const double sums = error_of_sums(e);
   // A program that solves this grid's problem knows its own sums and its own twist.
   const bool discrete =
       e.constant_cells && keeps_friction_bound(e.contact) && e.deviation.gap <= allowed.discrete_gap;
-  const auto load = [&](double measured) {
-    return std::max(discrete ? 0.0 : kWholeMesh * measured, quadrature) + sums;
+  const auto load = [&](double measured, double of_sum) {
+    return std::max(discrete ? 0.0 : kWholeMesh * measured, of_sum) + sums;
   };
-  allowed.normal = load(y.mesh.loads.normal);
+  allowed.normal = load(y.mesh.loads.normal, quadrature);
   allowed.moment = solver::value_if<solver::Twist>(e.scene.steps.front().torsion)
-                       ? std::max(kWholeMesh * y.mesh.deviation.moment, quadrature) + sums
-                       : load(y.mesh.loads.moment);
-  allowed.force = load(y.mesh.loads.force);
+                       ? std::max(kWholeMesh * y.mesh.deviation.moment, of_moment) + sums
+                       : load(y.mesh.loads.moment, of_moment);
+  allowed.force = load(y.mesh.loads.force, quadrature);
   allowed.pressure =
       kNormalTolerance + kWholeMesh * y.mesh.deviation.pressure +
       kOtherDraws * (e.contact.bound_rounding.sum() + y.noise_size.sum()) / e.contact.friction_bound.sum();
   allowed.motion =
       (discrete ? 0.0 : kWholeMesh * y.mesh.deviation.motion) + quadrature + by_chance(&Deviation::motion);
   allowed.tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
+  allowed.inside = kWholeMesh * y.mesh.deviation.inside + by_chance(&Deviation::inside);
   allowed.friction =
       kFrictionDigits + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction);
-  allowed.friction_bound = std::max(kFrictionDigits, allowed.friction - kFrictionDigits);
+  allowed.friction_bound =
+      std::max(kFrictionDigits, kWholeMesh * y.mesh.deviation.excess + by_chance(&Deviation::excess));
   allowed.direction =
       kUnseenAngle + kWholeMesh * y.mesh.direction + kDegreesInARadian * by_chance(&Deviation::tractions);
   allowed.gap = allowed.discrete_gap +

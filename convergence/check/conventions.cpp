@@ -10,6 +10,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/pressure.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
@@ -159,10 +160,55 @@ bool has_axis(const solver::Scene& scene) {
          scene.surfaces.front().shape != solver::Shape::roughness;
 }
 
-/// Moves a contact onto its body's axis. A contact that stood a cell or more away was in other coordinates.
-void correct_origin(Interpretation& read, const solver::Scene& scene) {
+/// Sum of the distances of a field's pressure from the exact one, at its cells.
+double distance_from(const Oracle& exact, const ForeignField& field) {
+  const ArrayXd x1 = solver::cell_x1(field.grid);
+  const ArrayXd x2 = solver::cell_x2(field.grid);
+  double distance = 0.0;
+  for (Index cell = 0; cell < x1.size(); ++cell) {
+    if (!(field.pressure[cell] > 0.0)) continue;
+    const double radius = exact.radius(x1[cell] + field.centre[0] - exact.centre[0],
+                                       x2[cell] + field.centre[1] - exact.centre[1]);
+    distance += std::abs(field.pressure[cell] - exact.pressure(std::max(radius, 0.35 * field.grid.h1)));
+  }
+  return distance;
+}
+
+/// Moves a field that counts from its grid's corner: all of its cells lie at positive coordinates, and its
+/// middle is half a side away from the middle of the scene's pressure.
+void correct_corner(Interpretation& read, const solver::Scene& scene, const solver::Model& model) {
   ForeignField& field = read.field;
-  if (!has_axis(scene)) return;
+  const solver::Grid& grid = model.grid;
+  if (!(2.0 * field.centre[0] > static_cast<double>(field.grid.n1 - 2) * field.grid.h1 &&
+        2.0 * field.centre[1] > static_cast<double>(field.grid.n2 - 2) * field.grid.h2))
+    return;
+  const ArrayXd pressure = solver::find_pressure(scene, model, scene.steps.front()).pressure;
+  const auto middle = [](const ArrayXd& p, const ArrayXd& x) { return (p * x).sum() / p.sum(); };
+  const std::array<double, 2> expected{middle(pressure, solver::cell_x1(grid)) * model.length_unit,
+                                       middle(pressure, solver::cell_x2(grid)) * model.length_unit};
+  const std::array<double, 2> found{field.centre[0] + middle(field.pressure, solver::cell_x1(field.grid)),
+                                    field.centre[1] + middle(field.pressure, solver::cell_x2(field.grid))};
+  const solver::Grid in_m = model.grid_in_m();
+  const std::array<double, 2> half{0.5 * static_cast<double>(in_m.n1) * in_m.h1,
+                                   0.5 * static_cast<double>(in_m.n2) * in_m.h2};
+  for (const double first : {0.5, 0.0}) {  // the first cell's centre, in cells
+    const std::array<double, 2> by{half[0] - (0.5 - first) * field.grid.h1,
+                                   half[1] - (0.5 - first) * field.grid.h2};
+    if (!(std::abs(found[0] - by[0] - expected[0]) <= 0.25 * field.grid.h1 &&
+          std::abs(found[1] - by[1] - expected[1]) <= 0.25 * field.grid.h2))
+      continue;
+    for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= by[k];
+    read.conventions.push_back(fmt::format(
+        "positions count from the grid's corner: moved by ({:.4g}, {:.4g}) m to its middle", by[0], by[1]));
+    return;
+  }
+}
+
+/// Moves a contact onto its body's axis. A contact that stood a cell or more away was in other coordinates.
+void correct_origin(Interpretation& read, const solver::Scene& scene, const solver::Model& model,
+                    const OracleAnswer& exact) {
+  ForeignField& field = read.field;
+  if (!has_axis(scene)) return correct_corner(read, scene, model);
   const double total = field.pressure.sum();
   std::array<double, 2> off{};
   for (std::size_t k = 0; k < 2; ++k) {
@@ -171,7 +217,12 @@ void correct_origin(Interpretation& read, const solver::Scene& scene) {
   }
   const double cells = std::max(std::abs(off[0]) / field.grid.h1, std::abs(off[1]) / field.grid.h2);
   if (!(cells > (scene.coupling == solver::Coupling::full ? 1.0 : kInPlace))) return;
-  for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= off[k];
+  ForeignField moved = field;
+  for (std::size_t k = 0; k < 2; ++k) moved.centre[k] -= off[k];
+  const bool known = exact.oracle && std::isfinite(exact.oracle->contact_radius);
+  if (known && !(distance_from(*exact.oracle, moved) < distance_from(*exact.oracle, field)))
+    return;  // rows are lost
+  field = std::move(moved);
   if (cells < 1.0) return;
   read.conventions.push_back(fmt::format(
       "the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
@@ -307,7 +358,7 @@ Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene
   correct_length(read, scene, expected_width(model, exact));
   correct_stress(read, scene.steps.front());
   correct_axes(read, scene);
-  correct_origin(read, scene);
+  correct_origin(read, scene, model, exact);
   correct_orientation(read, scene, exact);
   return read;
 }

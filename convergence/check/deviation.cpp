@@ -38,8 +38,10 @@ double motion_error(const GivenContact& c, const RightAnswer& right, const State
 }
 
 /// |q| over a bound, less 1, in the slip ring, in order; empty where hardly any cell slips.
-std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right) {
-  const std::vector<Index> ring = slip_ring(contact, right);
+std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right,
+                                const Regions& regions) {
+  std::vector<Index> ring = slip_ring(contact, right);
+  std::erase_if(ring, [&](Index cell) { return regions.ring[cell] == 0.0; });
   if (ring.size() < kMinSlipping) return {};
   const ArrayXd size = solver::norms(contact.traction);
   std::vector<double> excess;
@@ -58,24 +60,95 @@ struct Plateau {
   double spread;
 };
 
-/// Another law, whose bound under its unit coefficient or strength is given, where the ring follows it.
-std::optional<OtherFriction> other_law(const GivenContact& contact, const RightAnswer& right,
-                                       solver::FrictionKind kind) {
-  constexpr double kFollows = 0.02;  // spread between the quartiles, over |q| itself
-  solver::FrictionLaw law = 1.0;
-  law.kind = kind;
-  law.shear_strength = 1.0;
-  const ArrayXd unit = law.bound(contact.pressure);
-  const Plateau shown(ring_excess(contact, unit, right));
-  const double factor = 1.0 + shown.middle;
-  if (kind == contact.friction.kind || !(shown.spread <= kFollows * factor)) return std::nullopt;
-  const std::string name =
-      kind == solver::FrictionKind::tresca
-          ? fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", factor * contact.stress_unit)
-          : fmt::format("Coulomb's law, with a coefficient of {:.4g},", factor);
+/// The highest value that many of some logarithms have, and how many.
+struct Highest {
+  double value = 0.0;
+  std::size_t cells = 0;
+};
+
+Highest highest_of(std::vector<double>& logs) {
+  constexpr double kFollows = 5e-3;  // relative, of |q|
+  constexpr std::size_t kTop = 50;   // one of so many cells may lie above
+  if (logs.empty()) return {};
+  const auto top = logs.end() - 1 - static_cast<std::ptrdiff_t>(logs.size() / kTop);
+  std::ranges::nth_element(logs, top);
+  const double value = *top;
+  const auto cells =
+      std::ranges::count_if(logs, [&](double log) { return std::abs(log - value) <= kFollows; });
+  return {value, static_cast<std::size_t>(cells)};
+}
+
+/// The law |q| = k p^n that most cells follow; and how many follow a multiple of the scene's law.
+struct PowerShown {
+  double exponent = 0.0;
+  double coefficient = 0.0;
+  std::size_t cells = 0;
+  double multiple = 1.0;
+  std::size_t cells_of_multiple = 0;
+};
+
+PowerShown power_shown(const GivenContact& c) {
+  constexpr double kExponentStep = 0.01;  // of exponents,
+  constexpr double kLargestExponent = 4;  // from 0
+  std::vector<Index> cells;
+  const ArrayXd size = solver::norms(c.traction);
+  for (Index cell = 0; cell < size.size(); ++cell) {
+    if (size[cell] > 0.0 && c.friction_bound[cell] > 0.0) cells.push_back(cell);
+  }
+  std::vector<double> logs(cells.size());
+  const auto highest_over = [&](const ArrayXd& unit) {
+    std::ranges::transform(cells, logs.begin(),
+                           [&](Index cell) { return std::log(size[cell] / unit[cell]); });
+    return highest_of(logs);
+  };
+  const Highest own = highest_over(c.friction_bound);
+  PowerShown best{.multiple = std::exp(own.value), .cells_of_multiple = own.cells};
+  for (double n = 0.0; n <= kLargestExponent; n += kExponentStep) {
+    const Highest found = highest_over(c.pressure.pow(n));
+    if (found.cells > best.cells) {
+      best.exponent = n;
+      best.coefficient = std::exp(found.value);
+      best.cells = found.cells;
+    }
+  }
+  return best;
+}
+
+OtherFriction multiple_of_law(const GivenContact& c, double factor) {
+  const solver::FrictionLaw& law = c.friction;
+  return {law.is_coulomb() ? fmt::format("a friction coefficient of {:.4g} in place of {:.4g}",
+                                         factor * law.coefficient, law.coefficient)
+                           : fmt::format("a friction {:.4g} times that of the scene's law", factor),
+          factor * c.friction_bound};
+}
+
+/// Another law that the field follows: Coulomb's, Tresca's or a power of the pressure.
+std::optional<OtherFriction> other_law(const GivenContact& c) {
+  constexpr double kSameExponent = 0.03;
+  constexpr double kSameMean = 0.02;
+  const PowerShown shown = power_shown(c);
+  const solver::FrictionLaw& law = c.friction;
+  const auto is = [&](double n) { return std::abs(shown.exponent - n) <= kSameExponent; };
+  if (std::max(shown.cells, shown.cells_of_multiple) < kMinSlipping) return std::nullopt;
+  constexpr double kAsMany = 0.95;  // follow the scene's own law
+  if (static_cast<double>(shown.cells_of_multiple) >= kAsMany * static_cast<double>(shown.cells))
+    return multiple_of_law(c, shown.multiple);
+  std::string name;
+  if (is(0.0)) {
+    name =
+        fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", shown.coefficient * c.stress_unit);
+    const double mean = law.coefficient * c.pressure.sum() / static_cast<double>((c.pressure > 0.0).count());
+    if (law.is_coulomb() && std::abs(shown.coefficient / mean - 1.0) <= kSameMean)
+      name += " mu times the mean pressure,";
+  } else if (is(1.0)) {
+    name = fmt::format("Coulomb's law, with a coefficient of {:.4g},", shown.coefficient);
+  } else {
+    name = fmt::format("|q| = k p^n with n = {:.2f}", shown.exponent);
+  }
   return OtherFriction{
-      fmt::format("{} in place of friction_law = \"{}\"", name, solver::to_string(contact.friction.kind)),
-      factor * unit};
+      fmt::format("{} in place of friction_law = \"{}\"{}", name, solver::to_string(law.kind),
+                  law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : ""),
+      (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
 }
 
 bool is_above_limit(double factor) { return !(factor > 1.0 - kBelowLimit); }
@@ -144,32 +217,34 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
   return cells;
 }
 
-std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right) {
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
+                                            const Regions& regions) {
   constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
-  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right);
+  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right, regions);
   if (excess.empty()) return std::nullopt;
   const Plateau shown(excess);
-  const solver::FrictionLaw& law = contact.friction;
   if (shown.spread <= kConstant * std::abs(shown.middle)) {
-    const double factor = 1.0 + shown.middle;
-    return OtherFriction{law.is_coulomb()
-                             ? fmt::format("a friction coefficient of {:.4g} in place of {:.4g}",
-                                           factor * law.coefficient, law.coefficient)
-                             : fmt::format("a friction {:.4g} times that of the scene's law", factor),
-                         factor * contact.friction_bound};
+    return multiple_of_law(contact, 1.0 + shown.middle);
   }
-  for (const auto kind : {solver::FrictionKind::coulomb, solver::FrictionKind::tresca}) {
-    if (auto other = other_law(contact, right, kind)) return other;
-  }
-  return std::nullopt;
+  return other_law(contact);
+}
+
+Regions find_regions(const GivenContact& contact, const RightAnswer& right) {
+  Regions regions{inner_cells(contact.grid, contact.pressure), ArrayXd::Ones(contact.grid.cells())};
+  const std::vector<Index> ring = slip_ring(contact, right);
+  const auto inside = std::ranges::count_if(ring, [&](Index cell) { return regions.inner[cell] > 0.0; });
+  if (inside >= static_cast<std::ptrdiff_t>(kMinSlipping)) regions.ring = regions.inner;
+  return regions;
 }
 
 Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
-                         const State& fitted) {
+                         const State& fitted, const Regions& regions) {
   const double moment = (right.traction * contact.rotation).sum();
-  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right);
-  return {.tractions =
-              solver::norms(contact.traction - right.traction).sum() / solver::norms(right.traction).sum(),
+  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right, regions);
+  const ArrayXd off = solver::norms(contact.traction - right.traction);
+  const double size = solver::norms(right.traction).sum();
+  return {.tractions = off.sum() / size,
+          .inside = (off * regions.inner).sum() / size,
           .motion = motion_error(contact, right, reported),
           .moment = moment == 0.0 ? 0.0 : contact.moment() / moment - 1.0,
           .friction = excess.empty() ? 0.0 : excess[excess.size() / 2],
@@ -186,8 +261,9 @@ solver::SlipDirection noticeable_direction(const GivenContact& c, const State& s
 
 Deviation larger(const Deviation& a, const Deviation& b) {
   const auto of = [&](double Deviation::*part) { return std::max(std::abs(a.*part), std::abs(b.*part)); };
-  return {of(&Deviation::tractions), of(&Deviation::motion), of(&Deviation::moment),
-          of(&Deviation::friction),  of(&Deviation::gap),    of(&Deviation::pressure)};
+  return {of(&Deviation::tractions), of(&Deviation::inside),   of(&Deviation::motion),
+          of(&Deviation::moment),    of(&Deviation::friction), of(&Deviation::excess),
+          of(&Deviation::gap),       of(&Deviation::pressure)};
 }
 
 }  // namespace slipstick::convergence

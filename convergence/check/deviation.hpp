@@ -51,21 +51,30 @@ struct State {
 };
 State find_state(const GivenContact& contact, const solver::Step& load, std::optional<double> twist);
 
+/// Parts of a contact: a mesh leaves more open where the edge cuts its cells.
+struct Regions {
+  Eigen::ArrayXd inner;  ///< inner_cells()
+  Eigen::ArrayXd ring;   ///< 1 in cells whose friction is judged: inner ones if enough of them slip, else all
+};
+Regions find_regions(const GivenContact& contact, const RightAnswer& right);
+
 /// Distances of tractions from the right answer with their pressure and loads, and from Coulomb's law.
 struct Deviation {
   double tractions = 0.0;  ///< sum |q - r| / sum |r|
+  double inside = 0.0;     ///< the part of that sum in inner cells
   double motion = 0.0;     ///< signed: see motion_error()
   double moment = 0.0;     ///< relative to the right one, signed; 0 where the right one is 0
   /// Median of |q|/(mu p) - 1 over the cells that slip in the right answer; 0 where hardly any cell slips.
   double friction = 0.0;
-  double gap = 0.0;  ///< of Coulomb's law, over energy
+  double excess = 0.0;  ///< the same, where it is above 0: cut cells carry less than their bound, none more
+  double gap = 0.0;     ///< of Coulomb's law, over energy
   /// sum |p - r| / sum r, with p under the right normal load; find_deviation() leaves it zero.
   double pressure = 0.0;
 };
 /// The motion is the reported one. The gap is that under the motion that fits best: a wrong twist is no
 /// mistake of the tractions.
 Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
-                         const State& fitted);
+                         const State& fitted, const Regions& regions);
 
 /// Direction of slip in cells that carry something and slip by more than a part of the largest displacement.
 /// Smaller slip, within the mesh error, has any direction.
@@ -80,10 +89,12 @@ struct OtherFriction {
   Eigen::ArrayXd bound;  ///< cells
 };
 
-/// The friction that the slip ring shows: the scene's law times a factor, unless |q| over its bound varies in
-/// half of the ring by more than a part of its distance from 1; or else another law, Coulomb's or Tresca's,
-/// which half of the ring follows closely. None where it shows none.
-std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right);
+/// The friction that a field shows: the scene's law times a factor, unless |q| over its bound varies in half
+/// of the slip ring by more than a part of its distance from 1; or else the law |q| = k p^n that most cells
+/// follow (n = 0: Tresca's, n = 1: Coulomb's), or the multiple of the scene's law, if as many follow it. None
+/// where few cells follow any.
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
+                                            const Regions& regions);
 
 /// The cells that slip in the right answer and carry more than next to nothing.
 std::vector<solver::Index> slip_ring(const GivenContact& contact, const RightAnswer& right);

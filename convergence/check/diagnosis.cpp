@@ -136,6 +136,16 @@ class Trial {
             fitted.coefficients[fitted.coefficients.size() - 1]};
   }
 
+  /// The multiple of K13 and K23 that fits best, one more coefficient in which slip is linear.
+  Assumption best_coupling() const {
+    std::vector<ArrayXd> motions = motions_;
+    motions.push_back(-by_pressure_);
+    const solver::FittedMotion fitted =
+        solver::fit_motion(elastic_ - imposed_, traction_, at_least(bound_), motions);
+    const double part = fitted.coefficients[fitted.coefficients.size() - 1];
+    return {.name = fmt::format("the kernels K13 and K23 times {:.3g}", part), .by_pressure = part};
+  }
+
   /// The Poisson's ratio that fits best, one more coefficient in which slip is linear; none where no body has
   /// it.
   std::optional<Assumption> best_poisson_ratio() const {
@@ -185,6 +195,10 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
   if (trial.coupled()) {
     assumptions.push_back({.name = "the kernels K13 and K23 missing", .by_pressure = 0.0});
     assumptions.push_back({.name = "the kernels K13 and K23 of the wrong sign", .by_pressure = -1.0});
+    const auto assumed = trial.best_coupling();
+    constexpr double kNear = 0.05;  // to a multiple that has a name: 0, 1 and -1
+    const double apart = std::abs(assumed.by_pressure - std::round(assumed.by_pressure));
+    if (apart > kNear) assumptions.push_back(assumed);
   }
   std::vector<Hypothesis> tried;
   tried.reserve(assumptions.size());

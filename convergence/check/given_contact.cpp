@@ -126,6 +126,15 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
           field.traction_rounding / stress};
 }
 
+ArrayXd inner_cells(const Grid& grid, const ArrayXd& pressure) {
+  const auto contact = (pressure > 0.0).cast<double>().eval();
+  ArrayXd inner = contact;
+  for (const Index row : {-1, 0, 1}) {
+    for (const Index column : {-1, 0, 1}) inner *= shifted(grid, contact, grid, row, column);
+  }
+  return inner;
+}
+
 ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
   return shifted(from, values, to, (from.n1 - to.n1) / 2, (from.n2 - to.n2) / 2);
 }

@@ -56,6 +56,10 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
 GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
                          Eigen::ArrayXd traction);
 
+/// 1 in contact cells all of whose neighbours, those at corners too, are in contact: the contact's edge cuts
+/// none of them. The others carry as much of a traction as a discretisation gives to a part of a cell.
+Eigen::ArrayXd inner_cells(const solver::Grid& grid, const Eigen::ArrayXd& pressure);
+
 /// A field on a larger or smaller grid about the same centre, with cells of the same size: continued by zero
 /// or cut off. The numbers of cells along each axis differ by an even number.
 Eigen::ArrayXd resized(const solver::Grid& from, const solver::Grid& to, const Eigen::ArrayXd& values);

@@ -147,8 +147,12 @@ std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::
 /// Measures the errors of right fields on a contact's grid.
 class MeshMeasurement {
  public:
-  MeshMeasurement(const GivenContact& contact, const solver::Step& load, bool twist_reported)
+  MeshMeasurement(const GivenContact& contact, const solver::Step& load, const Regions& regions,
+                  bool twist_reported)
       : contact_(contact), load_(load), grid_(padded(contact.grid)), twist_reported_(twist_reported) {
+    regions_.inner = resized(contact.grid, grid_, regions.inner);
+    const bool all = (regions.ring > 0.0).all();
+    regions_.ring = all ? ArrayXd(ArrayXd::Ones(grid_.cells())) : resized(contact.grid, grid_, regions.ring);
     errors_.pressures = errors_.tractions = ArrayXd::Zero(contact.pressure.size());
   }
 
@@ -173,7 +177,7 @@ class MeshMeasurement {
     const State fitted = find_state(field, load_, std::nullopt);
     const State reported = twist_reported_ ? find_state(field, load_, twist) : fitted;
     const RightAnswer right = find_right_answer(field, load_);
-    Deviation deviation = find_deviation(field, right, reported, fitted);
+    Deviation deviation = find_deviation(field, right, reported, fitted, regions_);
     deviation.pressure = errors_.deviation.pressure;
     errors_.deviation = larger(errors_.deviation, deviation);
     errors_.tractions =
@@ -181,6 +185,8 @@ class MeshMeasurement {
     errors_.direction =
         std::max(errors_.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   }
+
+  void take_moment_limit(double limit) { errors_.moment_limit = limit; }
 
   /// The exact answer shows an error that no finer mesh shows: its slip ring may be narrower than a cell.
   void add_exact(const Oracle& exact) {
@@ -207,17 +213,18 @@ class MeshMeasurement {
   const GivenContact& contact_;
   const solver::Step& load_;
   Grid grid_;
+  Regions regions_;
   bool twist_reported_;
   MeshErrors errors_;
 };
 
 MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene, const solver::Model& model,
-                        const Known& known, const std::optional<WidePressure>& wide) {
+                        const Regions& regions, const Known& known, const std::optional<WidePressure>& wide) {
   const solver::Step& load = scene.steps.front();
   const Grid grid = padded(contact.grid);
   const Grid fine = finer(grid);
   const Grid fine_whole = wide ? finer(wide->grid) : fine;
-  MeshMeasurement measurement(contact, load, known.twist);
+  MeshMeasurement measurement(contact, load, regions, known.twist);
   const auto found = fine_pressure(contact, scene, model, known.pressed, fine_whole, wide.has_value());
   ArrayXd pressure = handed_down(contact.grid, contact.pressure);
   if (found) {
@@ -226,6 +233,8 @@ MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene,
   }
   if (found && wide) measurement.add_pressures(*wide, *found);
   const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
+  const ArrayXd fine_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
+  measurement.take_moment_limit(solver::free_moment_limit(fine, fine_bound) / kChildrenOfCell);
   const Sums sums = sums_of(fine, pressure, solution.traction);
   measurement.add_field(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
   measurement.add_field(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
@@ -264,8 +273,8 @@ ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
 
 /// The deviation of the right answer with random errors, whose standard deviation is given for each cell: the
 /// larger one of a draw and its opposite.
-Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const solver::Step& load,
-                    const ArrayXd& size) {
+Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const Regions& regions,
+                    const solver::Step& load, const ArrayXd& size) {
   if (!(size.maxCoeff() > 0.0)) return {};
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -276,24 +285,33 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
     const GivenContact field =
         with_fields(contact, contact.grid, contact.pressure, right.traction + sign * error);
     const State fitted = find_state(field, load, std::nullopt);
-    worst = larger(worst, find_deviation(field, right, fitted, fitted));
+    worst = larger(worst, find_deviation(field, right, fitted, fitted, regions));
   }
   return worst;
 }
 
 }  // namespace
 
+std::optional<ScenePressure> find_scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                                 const solver::Model& model) {
+  const auto wide = wide_pressure(contact, scene, model);
+  return wide ? std::optional(on_field(contact, *wide)) : std::nullopt;
+}
+
 ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Scene& scene,
                                        const solver::Model& model, const Known& known) {
   const solver::Step& load = scene.steps.front();
   const auto wide = known.pressure ? std::nullopt : wide_pressure(contact, scene, model);
   const RightAnswer right = find_right_answer(contact, load);
+  const Regions regions = find_regions(contact, right);
   const ArrayXd noise = noise_size(contact, right);
   return {.pressure = wide ? std::optional(on_field(contact, *wide)) : std::nullopt,
           .right = right,
-          .mesh = measure_mesh(contact, scene, model, known, wide),
-          .rounding = disturbed(contact, right, load, contact.traction_rounding + contact.bound_rounding),
-          .noise = disturbed(contact, right, load, noise),
+          .regions = regions,
+          .mesh = measure_mesh(contact, scene, model, regions, known, wide),
+          .rounding =
+              disturbed(contact, right, regions, load, contact.traction_rounding + contact.bound_rounding),
+          .noise = disturbed(contact, right, regions, load, noise),
           .noise_size = noise};
 }
 

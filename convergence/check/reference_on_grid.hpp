@@ -17,11 +17,12 @@ struct LoadErrors {
 
 /// Errors that a mesh causes in right fields, the larger one of several fields each.
 struct MeshErrors {
-  Deviation deviation;       ///< from the right answer
-  LoadErrors loads;          ///< by midpoints and edge cells
-  double direction = 0.0;    ///< of noticeable slip, in the mean, degrees
-  Eigen::ArrayXd pressures;  ///< cells of the field's grid: distance of right pressures from the reference,
-  Eigen::ArrayXd tractions;  ///< and of right tractions
+  Deviation deviation;        ///< from the right answer
+  LoadErrors loads;           ///< by midpoints and edge cells
+  double moment_limit = 0.0;  ///< of the finer pressure, over the cell area of the field's grid
+  double direction = 0.0;     ///< of noticeable slip, in the mean, degrees
+  Eigen::ArrayXd pressures;   ///< cells of the field's grid: distance of right pressures from the reference,
+  Eigen::ArrayXd tractions;   ///< and of right tractions
 };
 
 /// The scene's own pressure, solved on the field's cells.
@@ -37,6 +38,7 @@ struct ScenePressure {
 struct ReferenceOnGrid {
   std::optional<ScenePressure> pressure;  ///< none: it cannot be solved on these cells, or is not wanted
   RightAnswer right;                      ///< with the field's own pressure and loads
+  Regions regions;
   MeshErrors mesh;
   Deviation rounding;         ///< of the right answer with the digits of the field's file,
   Deviation noise;            ///< and with as much noise as the field shows
@@ -50,6 +52,11 @@ struct Known {
   bool twist;                     ///< the program reported its twist; right fields then report theirs
   bool pressure;                  ///< the field's pressure is taken as given
 };
+
+/// The pressure of a scene, of the contact's bodies, on the contact's cells. None where it cannot be solved
+/// on these.
+std::optional<ScenePressure> find_scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                                 const solver::Model& model);
 
 /// model: the scene's. Throws std::runtime_error where a solve does not converge.
 ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Scene& scene,

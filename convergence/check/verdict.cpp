@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "convergence/check/mistaken_scene.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "solver/model_solution.hpp"
 
@@ -57,11 +58,15 @@ Judged judge_cells(const std::string& what, const std::string& key, const GivenC
                       percent(deviation[cell] / scale), allowed_text(allowed[cell] / scale))};
 }
 
-/// Judges a field in the mean and cell by cell; only the mean is put in words where it is wrong.
-void judge_field(std::vector<Judged>& judged, const Judged& mean, Judged cells) {
-  if (!mean.holds()) cells.wrong.clear();
+/// Judges a field in the mean, and in parts of it, of which only the first wrong one is put in words.
+void judge_field(std::vector<Judged>& judged, const Judged& mean, std::vector<Judged> parts) {
+  bool right = mean.holds();
   judged.push_back(mean);
-  judged.push_back(std::move(cells));
+  for (Judged& part : parts) {
+    if (!right) part.wrong.clear();
+    right = right && part.holds();
+    judged.push_back(std::move(part));
+  }
 }
 
 /// Judges normal load and pressure. A contact may end a cell too early or too late.
@@ -88,13 +93,13 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, const All
       {"pressure", right.off, allowed.pressure, "",
        fmt::format("the contact has another shape: its pressure is {} off in the mean{}{}",
                    percent(right.off), most_text(c, right.deviation), allowed_text(allowed.pressure))},
-      judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
-                  allowed.pressure_cells));
+      {judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
+                   allowed.pressure_cells)});
 }
 
 /// The relative error of the moment, which the scene asks for or the imposed twist causes. A scene's ratio
-/// may refer to the exact limit moment or to the limit of the field's own pressure. None: the moment is not
-/// known.
+/// may refer to the exact limit moment, to the limit of the field's own pressure or, where the exact one is
+/// not known, to that of the right pressure on a finer mesh. None: the moment is not known.
 std::optional<double> moment_error(const Examination& e) {
   const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
   if (std::holds_alternative<solver::Twist>(torsion)) return e.deviation.moment;
@@ -103,7 +108,10 @@ std::optional<double> moment_error(const Examination& e) {
   const auto ratio = solver::value_if<solver::MomentRatio>(torsion);
   if (!ratio) return error;
   const double of_own_limit = relative_error(e.contact.moment(), *ratio * e.moment_limit);
-  return std::abs(of_own_limit) < std::abs(error) ? of_own_limit : error;
+  const double of_finer_limit = relative_error(e.contact.moment(), *ratio * e.reference.mesh.moment_limit);
+  const bool exact = e.exact.oracle && std::isfinite(e.exact.oracle->moment);
+  return std::min({error, of_own_limit, exact ? error : of_finer_limit},
+                  [](double a, double b) { return std::abs(a) < std::abs(b); });
 }
 
 void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
@@ -138,8 +146,11 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
               {"tractions", e.deviation.tractions, allowed.tractions, "",
                fmt::format("the tractions are {} off in the mean{}{}", percent(e.deviation.tractions),
                            most_text(c, deviation), allowed_text(allowed.tractions))},
-              judge_cells("the traction", "traction_cell", c, c.friction_bound.maxCoeff(), deviation,
-                          allowed.traction_cells));
+              {{"tractions_inside", e.deviation.inside, allowed.inside, "",
+                fmt::format("the tractions away from the contact's edge are {} off in the mean{}",
+                            percent(e.deviation.inside), allowed_text(allowed.inside))},
+               judge_cells("the traction", "traction_cell", c, c.friction_bound.maxCoeff(), deviation,
+                           allowed.traction_cells)});
 }
 
 void judge_friction(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
@@ -210,16 +221,39 @@ std::string twist_mistake(const Examination& e, double allowed) {
   const double upper = compliance(e.scene.upper);
   const auto& exact = e.exact.oracle;
   const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
-  const std::array<Ratio, 6> ratios{{{lower / (lower + upper), "the compliance of one body only"},
+  const std::array<Ratio, 7> ratios{{{lower / (lower + upper), "the compliance of one body only"},
                                      {upper / (lower + upper), "the compliance of one body only"},
                                      {2.0, "twice the compliance of the pair"},
                                      {180.0 / std::numbers::pi, "a twist in degrees"},
+                                     {1e3, "a twist in mrad"},
                                      {-1.0, "a twist of the other sense"},
                                      {normalised, "the normalised twist of a result, G a^2 phi/(mu W)"}}};
   for (const Ratio& ratio : ratios) {
     if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
   }
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
+}
+
+/// Tractions of a smaller load than the scene's, which are right under their own: those of the step before
+/// the last of N equal ones, or of some other where the reported twist is that of the scene's load.
+std::optional<std::string> step_before(const Examination& e, const std::vector<Judged>& judged,
+                                       const Allowed& allowed) {
+  constexpr double kMostSteps = 10.0;  // more steps stand too close to be told from other mistakes
+  const bool others_hold = std::ranges::all_of(judged, [](const Judged& item) {
+    return item.holds() || item.quantity == "moment_error" || item.quantity == "twist";
+  });
+  const auto error = moment_error(e);
+  if (!others_hold || !error || holds(judged, "moment_error") || !(*error < 0.0)) return std::nullopt;
+  const double steps = std::round(-1.0 / *error);
+  const double apart = std::abs(1.0 + *error * steps) / steps;
+  if (steps <= kMostSteps && apart <= std::min(allowed.moment, 0.05 / (steps * (steps + 1.0)))) {
+    return fmt::format("tractions one step late: those of the step before the last of {}", steps);
+  }
+  const bool twist_of_scene =
+      e.twist_given && e.exact.oracle && !holds(judged, "twist") &&
+      std::abs(relative_error(e.state.twist, e.exact.oracle->twist_angle)) <= allowed.motion;
+  if (twist_of_scene) return "tractions one step late: the twist is that of the scene's load";
+  return std::nullopt;
 }
 
 /// Names only mistakes whose correction would leave a good field.
@@ -235,7 +269,13 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
     causes.emplace_back(
         "a pressure that is infinite at a place, sampled at cell centres in place of averaged");
   }
-  if (!diagnosis || !has_right_pressure(judged)) return causes;
+  if (!has_right_pressure(judged) && causes.empty()) {
+    auto mistake = lost_rows(e, allowed.pressure);
+    if (!mistake && holds(judged, "normal_load_error")) mistake = mistaken_scene(e, allowed.pressure);
+    if (mistake) causes.push_back(std::move(*mistake));
+  }
+  if (const auto late = step_before(e, judged, allowed)) causes.push_back(*late);
+  if (!diagnosis || !has_right_pressure(judged) || !causes.empty()) return causes;
   const bool others_hold = std::ranges::all_of(
       judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
   if (e.twist_given && !holds(judged, "twist") && others_hold) {
@@ -321,7 +361,7 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   std::optional<Diagnosis> diagnosis;
   if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
     if (!holds(judged, "friction") || !holds(judged, "friction_bound"))
-      friction = friction_shown(e.contact, e.reference.right);
+      friction = friction_shown(e.contact, e.reference.right, e.reference.regions);
     diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction, !is_coated(e.scene));
   }
   const Judged discrete = judge_discrete(e, allowed);

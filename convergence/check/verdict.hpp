@@ -20,6 +20,7 @@ struct Allowed {
   Eigen::ArrayXd pressure_cells;  ///< cells; empty: the pressure is not judged
   double motion;
   double tractions;               ///< in the mean
+  double inside;                  ///< their part in inner cells
   Eigen::ArrayXd traction_cells;  ///< cells
   double friction;                ///< of |q|/(mu p) in the slip ring
   double friction_bound;          ///< of friction_excess()

@@ -48,8 +48,8 @@ std::string percent_text(const Json& part);
 /// The same with four digits.
 std::string short_text(const Json& value);
 
-/// Of a result: the bound of its law of friction, "mu p"; and the angle between slip and traction that any
-/// law asks for.
+/// The bound of a result's law of friction, "mu p"; and the angle between slip and traction that any law asks
+/// for.
 std::string bound_text(const Json& result);
 std::string right_direction_text(const Json& result);
 

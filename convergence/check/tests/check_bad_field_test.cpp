@@ -205,6 +205,60 @@ TEST_F(CheckBadField, Twists) {
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
 }
 
+TEST_F(CheckBadField, TwistInMilliradians) {
+  find_bad(rows_, scene_, HasSubstr("a twist in mrad"), 1e3 * solution_.twist_angle);
+}
+
+// The step before the last of four, written with the pressure of the last.
+TEST(CheckCause, TractionsOneStepLate) {
+  const solver::Scene scene = scene_of("paper", 40);
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, HasSubstr("the last of 4"));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene, Not(HasSubstr("one step late")));
+}
+
+TEST(CheckCause, RowsAreLost) {
+  for (const char* name : {"paper", "ellipse"}) {
+    const solver::Scene scene = scene_of(name, 40);
+    FieldRows rows = solved(scene);
+    const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
+    FieldRows inside = rows;
+    inside.erase(inside.begin() + (middle - rows.begin()), inside.begin() + (middle - rows.begin()) + 5);
+    find_bad(inside, scene, HasSubstr("lost rows: 5 cells"));
+    rows.resize(rows.size() - rows.size() / 10);
+    find_bad(rows, scene, HasSubstr("lost rows"));
+  }
+}
+
+TEST(CheckCause, AnotherLayer) {
+  const std::vector<std::string> layer{"lower.layer={thickness=1e-4,young_modulus=420e9,poisson_ratio=0.25}",
+                                       "contact.coupling=none"};
+  const solver::Scene scene = scene_of("paper", 40, layer);
+  find_bad(solved(scene_of("paper", 40)), scene, HasSubstr("the layer on the lower body ignored"));
+  find_bad(solved(scene_of("paper", 32, {layer[0], layer[1], "lower.layer.thickness=3e-4"})), scene,
+           HasSubstr("a layer of 0.0003 m in place of 0.0001 m"));
+  find_bad(solved(scene_of("paper", 40,
+                           {layer[0], layer[1], "lower.young_modulus=420e9", "lower.poisson_ratio=0.25",
+                            "lower.layer.young_modulus=210e9", "lower.layer.poisson_ratio=0.3"})),
+           scene, HasSubstr("the constants of the lower body and its layer exchanged"));
+}
+
+TEST(CheckCause, OtherModuli) {
+  const solver::Scene scene = scene_of("paper", 40);
+  find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=420e9", "lower.young_modulus=420e9"})), scene,
+           HasSubstr("the compliance of one body only"));
+  find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=290e9", "lower.young_modulus=290e9"})), scene,
+           HasSubstr("elastic moduli 1.38 times those of the scene"));
+}
+
+TEST(CheckCause, PositionsFromTheGridsCornerAreAConvention) {
+  const solver::Scene scene = scene_of("patches", 48);
+  const solver::Solution solution = solver::solve(scene);
+  const double half1 = 24.0 * solution.grid.h1;
+  const double half2 = 24.0 * solution.grid.h2;
+  const FieldRows rows = changed(rows_of(solution), [&](FieldRow& row) { row[0] += half1, row[1] += half2; });
+  EXPECT_THAT(find_good(rows, scene)["conventions"].dump(), HasSubstr("from the grid's corner"));
+}
+
 TEST_F(CheckBadField, NotJudged) {
   FieldRows negative = rows_;
   negative[6][2] = -1.0;

@@ -41,6 +41,36 @@ TEST(CheckFrictionLaw, NamesAWrongStrength) {
            HasSubstr("a friction 1.1 times that of the scene's law"));
 }
 
+// Cells that the edge cuts may carry a part of the strength; no cell carries more.
+TEST(CheckFrictionLaw, FindsAStrongerInterfaceBadOnCoarseMeshes) {
+  for (const int cells : {24, 32, 48}) {
+    for (const double ratio : {0.4, 0.7}) {
+      const solver::Scene scene = under(kTresca, cells, ratio);
+      const solver::Solution right = solver::solve(scene);
+      find_good(rows_of(right), scene);
+      for (const char* strength : {"1.1e8", "1.5e8", "0.9e8"}) {
+        find_bad(solved(scene_of("paper", cells,
+                                 {kTresca[0], fmt::format("contact.shear_strength={}", strength),
+                                  fmt::format("load.moment={}", right.moment)})),
+                 scene, HasSubstr("allowed"));
+      }
+    }
+  }
+}
+
+TEST(CheckFrictionLaw, NamesAnotherExponentAndTheMeanPressure) {
+  Settings linear = kPower;
+  linear[1] = "contact.friction=20";
+  linear[2] = "contact.friction_exponent=0.75";
+  find_bad(solved(under(linear)), under(kPower), HasSubstr("n = 0.75 in place of"));
+  find_bad(solved(under(kPower)), under({}), HasSubstr("n = 0.50 in place of"));
+  const solver::Solution solution = solver::solve(under({}));
+  const double mean =
+      solution.normal_load / static_cast<double>(solution.contact_cells) / solution.grid.cell_area();
+  find_bad(solved(under({kTresca[0], fmt::format("contact.shear_strength={}", 0.1 * mean)})), under({}),
+           HasSubstr("mu times the mean pressure"));
+}
+
 TEST(CheckFrictionLaw, SpeaksOfTheScenesLaw) {
   const FieldRows field = solved(under({}));
   for (const auto& [settings, law] :
