@@ -133,6 +133,9 @@ std::optional<OtherFriction> other_law(const GivenContact& c) {
   constexpr double kAsMany = 0.95;  // follow the scene's own law
   if (static_cast<double>(shown.cells_of_multiple) >= kAsMany * static_cast<double>(shown.cells))
     return multiple_of_law(c, shown.multiple);
+  const bool same = (law.is_coulomb() && is(1.0)) || (law.kind == solver::FrictionKind::tresca && is(0.0)) ||
+                    (law.kind == solver::FrictionKind::power && is(law.exponent));
+  if (same) return std::nullopt;  // nearly the scene's law: something else is wrong
   std::string name;
   if (is(0.0)) {
     name =
