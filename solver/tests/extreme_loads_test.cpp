@@ -140,7 +140,7 @@ TEST(SmallFriction, BetweenDissimilarBodiesEndsAsItSays) {
     const bool within = std::min(certificate.gap, certificate.energy_error) <= scene.tolerance;
     EXPECT_EQ(within, friction > 1e-10);
     EXPECT_EQ(solution.status == Status::converged, within) << solution.message;
-    if (!within) EXPECT_THAT(solution.message, testing::HasSubstr("rounding"));
+    EXPECT_TRUE(within || solution.message.find("rounding") != std::string::npos) << solution.message;
     EXPECT_LE(certificate.moment, kRounding);
     EXPECT_LE(certificate.gap, std::max(1e-8, certificate.rounding));
   }

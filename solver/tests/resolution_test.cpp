@@ -28,7 +28,8 @@ LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio, doub
 /// elsewhere.
 Resolution resolution_of(const Grid& grid, const LoadStep& loads, const ArrayXd& stick) {
   const ArrayXd& bound = loads.problem.friction_bound;
-  TangentialSolution tangential{.stick = stick};
+  TangentialSolution tangential;
+  tangential.stick = stick;
   tangential.traction = ArrayXd::Zero(2 * grid.cells());
   tangential.traction.head(grid.cells()) = bound * (1.0 - 0.5 * stick);
   return resolution({}, {}, grid, loads, tangential, counted_area(grid, bound));
@@ -76,7 +77,8 @@ TEST(Resolution, OfADiscFallsWithTheWidthOfItsSlipRing) {
     Scene scene;
     scene.friction = FrictionLaw{};
     scene.friction.kind = FrictionKind::tresca;
-    TangentialSolution tangential{.stick = stick};
+    TangentialSolution tangential;
+    tangential.stick = stick;
     tangential.traction = ArrayXd::Zero(2 * grid.cells());
     const double step =
         resolution(scene, {}, grid, loads, tangential, counted_area(grid, loads.problem.friction_bound)).step;
