@@ -213,7 +213,8 @@ TEST_F(CheckBadField, TwistInMilliradians) {
 TEST(CheckCause, TractionsOneStepLate) {
   const solver::Scene scene = scene_of("paper", 40);
   find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, HasSubstr("the last of 4"));
-  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene, Not(HasSubstr("one step late")));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene,
+           Not(HasSubstr("one step late")));
 }
 
 TEST(CheckCause, RowsAreLost) {
