@@ -249,6 +249,8 @@ void add_slip_without_friction(TangentialSolution& solution, const Scene& scene,
                                const ArrayXd& bound, const ArrayXd& pressure, const ContactState& before) {
   const auto free = ((pressure > 0.0) && (bound == 0.0)).replicate(2, 1);
   if (!free.any()) return;
+  const bool rests = solution.twist == 0.0 && solution.displacement == std::array<double, 2>{};
+  if (scene.friction.is_frictionless() && rests && !moves_by_pressure(scene, model)) return;  // slip is zero
   const Reduction part = traction_part(scene, model, pressure, before.pressure);
   ArrayXd u = part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction)
                                                          : solution.traction);

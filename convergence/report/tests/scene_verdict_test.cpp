@@ -51,7 +51,7 @@ TEST(Headline, IsGoodWhereAllIsAsItShould) {
       says(found, "2 of 3 pass, 1 fails as it should; nearest to its bound is narrow, at 80 % of it"));
   EXPECT_TRUE(says(found, "2 of 3 certified, 1 refused with a reason, 0 not converged, 0 wrong"));
   EXPECT_TRUE(says(found, "P is good, Q is bad"));
-  EXPECT_TRUE(says(found, "2 of 3 published numbers agree, 1 differ for a known reason"));
+  EXPECT_TRUE(says(found, "2 of 3 published numbers agree at their digits, 1 differ for a known reason"));
 }
 
 TEST(Headline, IsBadWhereAnythingIsNot) {
