@@ -13,18 +13,19 @@ using Eigen::ArrayXd;
 /// The cells where a field is not zero.
 struct Area {
   double cells = 0.0;
-  double outline = 0.0;           ///< its length in sides of cells
-  std::array<double, 2> sides{};  ///< of cells that look along x1, x2
-  double mean = 0.0;              ///< of the field
-  double edge = 0.0;              ///< of the field along the outline
+  double outline = 0.0;             ///< its length in sides of cells
+  std::array<double, 2> sides{};    ///< of cells that look along x1, x2
+  double mean = 0.0;                ///< of the field
+  double edge = 0.0;                ///< of the field along the outline
+  std::array<double, 2> at_edge{};  ///< means along the outline of what else is looked for there
 };
 
-/// field(cell): its value there.
-template <typename Field>
-Area measure(const Grid& grid, const Field& field) {
-  using Sums =
-      std::array<double, 5>;  // cells, sides that look along x1 and x2, the field, the field by sides
-  const auto [cells, sides1, sides2, mean, edge] =
+/// field(cell): its value there; at_edge(cell): further values, where a side of the cell looks outwards.
+template <typename Field, typename AtEdge>
+Area measure(const Grid& grid, const Field& field, const AtEdge& at_edge) {
+  // Cells, sides that look along x1 and x2, the field; the field and at_edge by sides.
+  using Sums = std::array<double, 7>;
+  const auto [cells, sides1, sides2, mean, edge, edge1, edge2] =
       Sweep::whole(grid).sum<Sums>([&](Index first, Index last, Sums& sum) {
         const bool top = first < grid.n2;
         const bool bottom = last > grid.cells() - grid.n2;
@@ -33,13 +34,23 @@ Area measure(const Grid& grid, const Field& field) {
           if (value == 0.0) continue;
           const double along1 = (top || field(k - grid.n2) == 0.0) + (bottom || field(k + grid.n2) == 0.0);
           const double along2 = (k == first || field(k - 1) == 0.0) + (k + 1 == last || field(k + 1) == 0.0);
-          sum += Sums{1.0, along1, along2, value, (along1 + along2) * value};
+          sum[0] += 1.0;
+          sum[3] += value;
+          const double sides = along1 + along2;
+          if (sides == 0.0) continue;
+          const auto [at1, at2] = at_edge(k);
+          sum += Sums{0.0, along1, along2, 0.0, sides * value, sides * at1, sides * at2};
         }
       });
   if (cells == 0.0) return {};
   // A staircase is longer than the curve that it follows, by 4/pi in the mean over all directions.
   const double outline = sides1 + sides2;
-  return {cells, std::numbers::pi / 4.0 * outline, {sides1, sides2}, mean / cells, edge / outline};
+  return {cells,          std::numbers::pi / 4.0 * outline,  {sides1, sides2}, mean / cells,
+          edge / outline, {edge1 / outline, edge2 / outline}};
+}
+template <typename Field>
+Area measure(const Grid& grid, const Field& field) {
+  return measure(grid, field, [](Index) { return std::array<double, 2>{}; });
 }
 
 /// The friction bound where the body would turn, over the contact's cells nearest to there; 0 where that is
@@ -107,26 +118,6 @@ constexpr double kHiddenRing = std::numbers::pi * std::numbers::pi / 16.0;
 /// Width of the stick area, in cells, from which on it adds no error of its own.
 constexpr double kWideStick = 8.0;
 
-/// A contact's outline where it sticks.
-struct StickingEdge {
-  double part = 0.0;  ///< of the outline
-  double ring = 0.0;  ///< cells along it, times the square of the traction over the bound
-};
-StickingEdge sticking_edge(const Grid& grid, const ArrayXd& bound, const TangentialSolution& tangential) {
-  const auto along_edge = [&](const auto& value) {  // in the mean; 0 where it slips
-    return measure(grid, [&](Index cell) {
-      return bound[cell] == 0.0 ? 0.0 : tangential.stick[cell] > 0.0 ? 1.0 + value(cell) : 1.0;
-    });
-  };
-  const Area counted = along_edge([](Index) { return 1.0; });
-  const Area used = along_edge([&](Index cell) {
-    const double q1 = tangential.traction[cell];
-    const double q2 = tangential.traction[cell + grid.cells()];
-    return (q1 * q1 + q2 * q2) / (bound[cell] * bound[cell]);
-  });
-  return {counted.edge - 1.0, (used.edge - 1.0) * used.outline};
-}
-
 /// How far a stick area may be off, relative, whose cube of the radius may be off by so much.
 double by_cubed_radius(double error) {
   const auto area = [](double cubed) { return std::cbrt(cubed * cubed); };
@@ -139,7 +130,15 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
                       const TangentialSolution& tangential, const CountedArea& contact_area) {
   const ArrayXd& stick = tangential.stick;
   const ArrayXd& bound = loads.problem.friction_bound;
-  const Area contact = measure(grid, [&](Index cell) { return bound[cell]; });
+  // The part of the outline that sticks, and the square of the traction over the bound there.
+  const auto sticking_at = [&](Index cell) -> std::array<double, 2> {
+    if (!(stick[cell] > 0.0)) return {};
+    const double used =
+        std::hypot(tangential.traction[cell], tangential.traction[cell + grid.cells()]) / bound[cell];
+    return {1.0, used * used};
+  };
+  const Area contact = measure(
+      grid, [&](Index cell) { return bound[cell]; }, sticking_at);
   if (contact.cells == 0.0) return {};
   const Area sticking = measure(grid, [&](Index cell) { return stick[cell]; });
   const Area slipping =
@@ -160,9 +159,9 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double of_area = by_area * contact_area.uncertainty / contact_area.counted;
   const double sides = contact.sides[0] + contact.sides[1];
   const double of_side = by_area * sides / contact.cells;
-  const StickingEdge at_edge = sticking_edge(grid, bound, tangential);
+  const auto [stuck, used] = contact.at_edge;
   const double ring = slipping.cells / contact.outline;
-  const double narrow = at_edge.part + (1.0 - at_edge.part) / (1.0 + std::pow(ring, 4));
+  const double narrow = stuck + (1.0 - stuck) / (1.0 + std::pow(ring, 4));
   const bool is_coulomb = loads.is_coulomb;
   const double sharp = is_coulomb ? edge : 0.0;  // a wide ring hides the edge but that of a face
   result.step = (errors.smooth + small) * cell * cell + sharp * kSharpEdge * cell +
@@ -177,7 +176,7 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   if (slipping.cells > 0.0)
     result.stick_area = sticking.cells * (by_cubed_radius(limit_error / (loads.limit.factor - 1.0)) +
                                           (beyond + narrow * errors.beyond) * sides / contact.cells);
-  result.stick_area += kHiddenRing * at_edge.ring;
+  result.stick_area += kHiddenRing * used * contact.outline;
   const RigidMotion& sliding = loads.limit.sliding;
   const bool mesh_decides =
       sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -84,51 +85,84 @@ struct Fit {
   double spread;
 };
 
-/// The quadratic that fits values() best in the cells around a cell that are more than `cut` layers deep.
+/// x^a y^b with a + b <= 4, by rising a + b and then b; the first six are the terms of a quadratic.
+using Monomials = std::array<double, 15>;
+constexpr std::size_t index_of(int a, int b) {
+  return static_cast<std::size_t>((a + b) * (a + b + 1) / 2 + b);
+}
+constexpr int kSide = 2 * kReach + 1;
+constexpr std::array<std::array<int, 2>, 6> kTerms{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
+
+/// The monomials of cells by their rows and columns from a cell, kReach at most; zeros beyond that distance.
+const std::vector<Monomials>& monomials() {
+  static const std::vector<Monomials> table = [] {
+    std::vector<Monomials> all;
+    for (int cell = 0; cell < kSide * kSide; ++cell) {
+      const double x = static_cast<double>(cell / kSide - kReach) / kReach;
+      const double y = static_cast<double>(cell % kSide - kReach) / kReach;
+      Monomials& here = all.emplace_back();
+      for (int degree = 0; degree <= 4 && x * x + y * y <= 1.0; ++degree) {
+        for (int b = 0; b <= degree; ++b)
+          here[index_of(degree - b, b)] = std::pow(x, degree - b) * std::pow(y, b);
+      }
+    }
+    return all;
+  }();
+  return table;
+}
+
+/// The quadratic that fits `values` best in the cells around a cell that are more than `cut` layers deep.
 /// None where they are few, or not all are like() the cell.
-template <class Values, class Like>
-std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int cut, const Values& values,
+template <class Like>
+std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int cut, const ArrayXd& values,
                           const Like& like) {
-  Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
-  int fitted = 0;
+  Monomials moments{};
+  std::array<double, kTerms.size()> sums{};
+  const Monomials* const around = monomials().data();
   const Index i = cell / grid.n2;
   const Index j = cell % grid.n2;
   for (Index k = std::max<Index>(0, i - kReach); k <= std::min(grid.n1 - 1, i + kReach); ++k) {
     for (Index l = std::max<Index>(0, j - kReach); l <= std::min(grid.n2 - 1, j + kReach); ++l) {
       const Index other = k * grid.n2 + l;
-      const double x = static_cast<double>(k - i) / kReach;
-      const double y = static_cast<double>(l - j) / kReach;
       if (like(other) != like(cell)) return std::nullopt;
-      if (x * x + y * y > 1.0 || depth[static_cast<std::size_t>(other)] <= cut) continue;
-      const Eigen::Vector<double, 6> terms{1.0, x, y, x * x, x * y, y * y};
-      squares += terms * terms.transpose();
-      sums += terms * values(other);
-      ++fitted;
+      const Monomials& at = around[(k - i + kReach) * kSide + l - j + kReach];
+      if (at[0] == 0.0 || depth[static_cast<std::size_t>(other)] <= cut) continue;
+      const double value = values[other];
+      for (std::size_t m = 0; m < at.size(); ++m) moments[m] += at[m];
+      for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += at[m] * value;
     }
   }
-  if (fitted < kFewestFitted) return std::nullopt;
+  if (moments[0] < kFewestFitted) return std::nullopt;
+  Eigen::Matrix<double, kTerms.size(), kTerms.size()> squares;
+  for (std::size_t r = 0; r < kTerms.size(); ++r) {
+    for (std::size_t c = 0; c < kTerms.size(); ++c) {
+      squares(static_cast<Index>(r), static_cast<Index>(c)) =
+          moments[index_of(kTerms[r][0] + kTerms[c][0], kTerms[r][1] + kTerms[c][1])];
+    }
+  }
   const Eigen::Vector<double, 6> weights = squares.ldlt().solve(Eigen::Vector<double, 6>::Unit(0));
-  return Fit{weights.dot(sums), std::sqrt(weights[0])};
+  return Fit{weights.dot(Eigen::Map<const Eigen::Vector<double, 6>>(sums.data())), std::sqrt(weights[0])};
 }
 
 double root(double square) { return std::sqrt(std::max(0.0, square)); }
 
-/// An edge towards which a square falls linearly, and the fits that say how far in its cut cells.
+/// An edge towards which the square of a field falls linearly, and the fits that say how far in its cut
+/// cells.
 class Edge {
  public:
+  explicit Edge(ArrayXd solved) : solved_(std::move(solved)), square_(solved_.square()) {}
+
   /// A cell within kCut layers of the edge takes the fit to whole cells; one as far again within those tries
-  /// it out, by whole cells as far from it. solved: the root that the square is of.
-  template <class Solved, class Like>
-  void add(const Grid& grid, Index cell, const Depths& depth, const Solved& solved, const Like& like) {
-    const auto square = [&](Index of) { return solved(of) * solved(of); };
+  /// it out, by whole cells as far from it.
+  template <class Like>
+  void add(const Grid& grid, Index cell, const Depths& depth, const Like& like) {
     const bool is_cut = depth[static_cast<std::size_t>(cell)] <= kCut;
-    const auto fit = fit_at(grid, cell, depth, is_cut ? kCut : 2 * kCut, square, like);
+    const auto fit = fit_at(grid, cell, depth, is_cut ? kCut : 2 * kCut, square_, like);
     if (!fit) return;
     if (is_cut) {
-      cut_.push_back({cell, *fit, solved(cell)});
+      cut_.push_back({cell, *fit, solved_[cell]});
     } else {
-      missed_ += std::pow((fit->value - square(cell)) / fit->spread, 2);
+      missed_ += std::pow((fit->value - square_[cell]) / fit->spread, 2);
       tried_ += 1.0;
     }
   }
@@ -178,6 +212,8 @@ class Edge {
     Fit fit;
     double solved;
   };
+  ArrayXd solved_;
+  ArrayXd square_;
   std::vector<Cut> cut_;
   double missed_ = 0.0;  ///< sum of squares, over the fit's spread
   double tried_ = 0.0;   ///< how many cells
@@ -204,8 +240,6 @@ Sharpened sharpened(const solver::Solution& solution) {
   };
   const Depths contact = depths(grid, [&](Index cell) { return p[cell] > 0.0; });
   const Depths stick = depths(grid, [&](Index cell) { return solution.stick[cell] > 0.0; });
-  const auto pressure = [&](Index cell) { return p[cell]; };
-  const auto missing = [&](Index cell) { return law.bound(p, cell) - size(cell); };
   const auto any = [](Index) { return true; };
   // The bound has a kink where its cap begins.
   const auto capped = [&](Index cell) {
@@ -214,15 +248,15 @@ Sharpened sharpened(const solver::Solution& solution) {
   const bool has_root = falls(p, contact);
   const double ring = solution.resolution.slip_width;
   const bool has_front = !law.factors && ring >= kNarrowestRing;
-  Edge edge;
-  Edge front;
+  Edge edge(p);
+  Edge front(law.bound(p) - solver::norms(solution.traction));
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const auto k = static_cast<std::size_t>(cell);
     // One layer outside carries what the fit leaves over.
-    if (has_root && contact[k] >= -1 && contact[k] <= 2 * kCut) edge.add(grid, cell, contact, pressure, any);
+    if (has_root && contact[k] >= -1 && contact[k] <= 2 * kCut) edge.add(grid, cell, contact, any);
     // Next to the edge the stick area is as narrow as the slip ring, and neither square is linear.
     if (has_front && contact[k] > kCut + 1 && stick[k] >= -kCut && stick[k] <= 2 * kCut)
-      front.add(grid, cell, stick, missing, capped);
+      front.add(grid, cell, stick, capped);
   }
   Sharpened found;
   const auto keep = [&](Edge& at, const char* name, const std::string& why) {
