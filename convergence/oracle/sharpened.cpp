@@ -124,9 +124,10 @@ std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int
   for (Index k = std::max<Index>(0, i - kReach); k <= std::min(grid.n1 - 1, i + kReach); ++k) {
     for (Index l = std::max<Index>(0, j - kReach); l <= std::min(grid.n2 - 1, j + kReach); ++l) {
       const Index other = k * grid.n2 + l;
-      if (like(other) != like(cell)) return std::nullopt;
       const Monomials& at = around[(k - i + kReach) * kSide + l - j + kReach];
-      if (at[0] == 0.0 || depth[static_cast<std::size_t>(other)] <= cut) continue;
+      if (at[0] == 0.0) continue;
+      if (like(other) != like(cell)) return std::nullopt;
+      if (depth[static_cast<std::size_t>(other)] <= cut) continue;
       const double value = values[other];
       for (std::size_t m = 0; m < at.size(); ++m) moments[m] += at[m];
       for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += at[m] * value;
@@ -152,11 +153,12 @@ class Edge {
  public:
   explicit Edge(ArrayXd solved) : solved_(std::move(solved)), square_(solved_.square()) {}
 
-  /// A cell within kCut layers of the edge takes the fit to whole cells; one as far again within those tries
-  /// it out, by whole cells as far from it.
+  /// A cell within kCut layers of the edge takes the fit to whole cells; every other one as far again within
+  /// those tries it out, by whole cells as far from it.
   template <class Like>
   void add(const Grid& grid, Index cell, const Depths& depth, const Like& like) {
     const bool is_cut = depth[static_cast<std::size_t>(cell)] <= kCut;
+    if (!is_cut && (cell / grid.n2 + cell % grid.n2) % 2 != 0) return;
     const auto fit = fit_at(grid, cell, depth, is_cut ? kCut : 2 * kCut, square_, like);
     if (!fit) return;
     if (is_cut) {
