@@ -189,7 +189,8 @@ void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives
 const Range& SceneReader::range_of(const std::string& key) const { return toml_->range(key); }
 
 std::string SceneReader::where(const std::string& key) const {
-  if (overridden_.contains(key)) return "--set";
+  const auto is_set = [&](const std::string& set) { return key == set || key.starts_with(set + "."); };
+  if (std::ranges::any_of(overridden_, is_set)) return "--set";
   const auto node = toml_->root.at_path(key);
   return node ? fmt::format("{}:{}", file_.string(), node.node()->source().begin.line) : file_.string();
 }

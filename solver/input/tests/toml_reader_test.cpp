@@ -105,6 +105,8 @@ TEST_F(Tables, AreOverriddenByIndex) {
   EXPECT_EQ(steps.number("step[1].force", kFinite), 2.0);
   EXPECT_EQ(steps.number("step[2].part[0].length", kFinite), 9.0);
   EXPECT_THAT(complaint([&] { steps.fail("step[0].force", "7", "less"); }), HasSubstr("--set"));
+  const SceneReader whole = reader(kSteps, {"load={force=7}"});
+  EXPECT_THAT(complaint([&] { whole.fail("load.force", "7", "less"); }), HasSubstr("--set"));
 }
 
 /// A point without a digit on one side, as shells have it, is named for what it is; a name may have one.
