@@ -23,7 +23,7 @@ double equal_area_radius(const Grid& grid, Index cells) {
   return std::sqrt(static_cast<double>(cells) * grid.cell_area() / std::numbers::pi);
 }
 
-/// What counting adds to a contact at each side of its edge, in cells.
+/// Cells that counting adds to a contact at each side of its edge.
 double counted_by_side(const Scene& scene) {
   const bool is_face = std::ranges::any_of(
       scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });

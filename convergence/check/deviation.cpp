@@ -68,7 +68,7 @@ struct Highest {
 
 Highest highest_of(std::vector<double>& logs) {
   constexpr double kFollows = 5e-3;  // relative, of |q|
-  constexpr std::size_t kTop = 50;   // one of so many cells may lie above
+  constexpr std::size_t kTop = 50;   // one in 50 cells may lie above
   if (logs.empty()) return {};
   const auto top = logs.end() - 1 - static_cast<std::ptrdiff_t>(logs.size() / kTop);
   std::ranges::nth_element(logs, top);

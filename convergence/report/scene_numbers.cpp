@@ -90,7 +90,8 @@ MeshError error_by_study(const Json& study, const std::string& key, double value
   return {};
 }
 
-/// What the mesh leaves open as the result states it, relative; NaN of another number than its `resolved`.
+/// The mesh's error as the result states it, relative; NaN where the result's uncertainty is of another
+/// number.
 double stated_mesh_error(const Json& result, const std::string& key) {
   return result["resolved"].value("number", "") == key
              ? number_at(result, "resolved.mesh") / size_at(result, key)
@@ -146,8 +147,8 @@ bool stands_for_radius(const Json& result, const std::string& key) {
          !(std::isnan(size_at(result, "exact.stick_radius")) && size_at(result, "exact.stick_ratio") > 0.0);
 }
 
-/// What the length of the steps leaves open of a number, relative: 0 where it cannot matter, NaN where
-/// nothing is known. `on_path`: whether the scene's answer depends on it.
+/// The relative error of a number that the length of the steps causes: 0 where it cannot matter, NaN where
+/// it is not known. `on_path`: whether the scene's answer depends on it.
 double path_error(const Json& result, const std::string& key, bool on_path) {
   const bool of_pressure =
       key == "moment_limit" || key == "contact_radius" || key == "peak_pressure" || key == "approach";

@@ -40,7 +40,7 @@ Json scene_studies(const RunSpec& base, const solver::Scene& scene, const Meshes
 /// open, or null where one of them is not known. study: of meshes.
 Json number_rows(const solver::Scene& scene, const std::vector<Json>& results, const Json& study);
 
-/// What a person calls a number of a page.
+/// The name of a number of a page in words.
 std::string words_of(const std::string& number);
 
 /// The number by which answers are compared, and what it is compared with.

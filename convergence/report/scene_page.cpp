@@ -101,7 +101,7 @@ Scene on_finest_mesh(const RunSpec& base, const Scene& scene, const Meshes& mesh
   return solver::read_scene(base.scene, overrides);
 }
 
-/// What the scene is, and what the page of a long history leaves out.
+/// The scene in words, and the meshes that the page of a long history leaves out.
 Json described(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size) {
   Json found = describe(scene, on_finest_mesh(base, scene, meshes), base.scene);
   if (is_long(scene, size) && !meshes.given) {

@@ -46,7 +46,7 @@ Finding judge_hard(const Json& hard, const std::string& what);
 /// fields of other programs are judged as they deserve.
 std::vector<Finding> judge_validation(const Json& paper);
 
-/// What a page says first: {verdict, commit, lines, numbers, counts}. The verdict is bad where a finding
+/// The head of a page: {verdict, commit, lines, numbers, counts}. The verdict is bad where a finding
 /// fails, else open where one is open, else good.
 Json headline_of(const std::vector<Finding>& findings, const Json& page);
 

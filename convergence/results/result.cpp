@@ -127,8 +127,8 @@ Json area_json(const solver::CountedArea& area) {
   return {{"counted", area.counted}, {"corrected", area.corrected}, {"uncertainty", area.uncertainty}};
 }
 
-/// An imposed twist of so many times the elastic one, which leaves so small a part of the limit moment, says
-/// no more than that moment. None of 120 contacts twisted to 0.02 to 0.999 of it is there.
+/// A twist is taken for a mistake above 15 times the elastic twist, where the moment is within 1e-4 of its
+/// limit. No contact out of 120 that were twisted to 0.02 to 0.999 of the limit was there.
 constexpr double kFarBeyondElastic = 15.0;
 constexpr double kNextToLimit = 1e-4;
 

@@ -31,8 +31,8 @@ struct RunSpec {
 /// The same run with further overrides, which are the last to hold.
 RunSpec changed(RunSpec run, const std::vector<std::string>& overrides);
 
-/// What a message complains of in an override that a study's or gate's file gives, not the command line; else
-/// empty.
+/// The complaint of a message about an override that the file of a study or gate gives; empty if the message
+/// is about the command line.
 std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line);
 
 /// A run whose scene has been read.

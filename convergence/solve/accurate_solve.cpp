@@ -51,9 +51,9 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
   return chosen;
 }
 
-/// The part of a target that the length of steps may take, and the most that a mesh leaves them; the largest
-/// number of their parts; how often that number is raised on few cells, and up to so many parts of all steps:
-/// from there on their error is taken to fall like one over their number.
+/// The part of a target that the length of the steps may take, the largest such part, the largest number of
+/// parts of a step, and the limits of trial solves on few cells: beyond them the error is taken to fall like
+/// one over the number of parts.
 constexpr double kPathPart = 0.4;
 constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;

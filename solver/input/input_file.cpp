@@ -94,8 +94,8 @@ bool lies_within(const std::filesystem::path& file, const std::filesystem::path&
 
 namespace {
 
-/// The control character with which a text begins, and its bytes in UTF-8; 0, 1: none. Those of C0 but the
-/// end of a line and the tab, of C1, and those of Unicode that turn the direction of text or end a line.
+/// The control character with which a text begins, and its bytes in UTF-8; {0, 1}: none. Control characters
+/// are C0 without line feed and tab, C1, and Unicode's that change the direction of text or end a line.
 std::pair<unsigned, std::size_t> steering(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[i])) : 0U;

@@ -52,8 +52,7 @@ std::optional<double> number_of(const toml::node& node) {
   return std::nullopt;
 }
 
-/// Numbers that are allowed; beside a text with a point as shells and C may have it, .5 or 5., also how TOML
-/// has it.
+/// The allowed numbers; after a text such as .5 or 5., which shells and C accept, also how TOML writes it.
 std::string for_number(const toml::node& node, const std::string& allowed) {
   const std::string text = fmt::format(" {} ", node.value_or(std::string()));
   const auto is_digit = [&](std::size_t at) { return text[at] >= '0' && text[at] <= '9'; };

@@ -162,7 +162,7 @@ TEST(Model, IsDimensionless) {
   EXPECT_NEAR(40.0 * model.length_unit, 2.0 * paper::kContactRadius + 4.0 * model.length_unit, 1e-15);
 }
 
-// Law, grid and friction change their unit together, by on_grid() alone.
+// Law, grid and friction change their unit together: on_grid() is the only way.
 static_assert(!std::is_assignable_v<LengthUnit&, double> && !std::is_assignable_v<LengthUnit&, LengthUnit>);
 static_assert(!std::is_constructible_v<LengthUnit, double>);
 
