@@ -118,6 +118,14 @@ constexpr double kHiddenRing = std::numbers::pi * std::numbers::pi / 16.0;
 /// Width of the stick area, in cells, from which on it adds no error of its own.
 constexpr double kWideStick = 8.0;
 
+/// Whether a cell sticks, and then the square of its traction over its bound; both 0 where it slips.
+std::array<double, 2> sticking_at(const TangentialSolution& tangential, const ArrayXd& bound, Index cell) {
+  if (!(tangential.stick[cell] > 0.0)) return {};
+  const double q1 = tangential.traction[cell];
+  const double q2 = tangential.traction[cell + bound.size()];
+  return {1.0, (q1 * q1 + q2 * q2) / (bound[cell] * bound[cell])};
+}
+
 /// How far a stick area may be off, relative, whose cube of the radius may be off by so much.
 double by_cubed_radius(double error) {
   const auto area = [](double cubed) { return std::cbrt(cubed * cubed); };
@@ -130,15 +138,9 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
                       const TangentialSolution& tangential, const CountedArea& contact_area) {
   const ArrayXd& stick = tangential.stick;
   const ArrayXd& bound = loads.problem.friction_bound;
-  // The part of the outline that sticks, and the square of the traction over the bound there.
-  const auto sticking_at = [&](Index cell) -> std::array<double, 2> {
-    if (!(stick[cell] > 0.0)) return {};
-    const double used =
-        std::hypot(tangential.traction[cell], tangential.traction[cell + grid.cells()]) / bound[cell];
-    return {1.0, used * used};
-  };
   const Area contact = measure(
-      grid, [&](Index cell) { return bound[cell]; }, sticking_at);
+      grid, [&](Index cell) { return bound[cell]; },
+      [&](Index cell) { return sticking_at(tangential, bound, cell); });
   if (contact.cells == 0.0) return {};
   const Area sticking = measure(grid, [&](Index cell) { return stick[cell]; });
   const Area slipping =

@@ -90,16 +90,16 @@ using Monomials = std::array<double, 15>;
 constexpr std::size_t index_of(int a, int b) {
   return static_cast<std::size_t>((a + b) * (a + b + 1) / 2 + b);
 }
-constexpr int kSide = 2 * kReach + 1;
+constexpr int kReachedSide = 2 * kReach + 1;
 constexpr std::array<std::array<int, 2>, 6> kTerms{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
 
 /// The monomials of cells by their rows and columns from a cell, kReach at most; zeros beyond that distance.
 const std::vector<Monomials>& monomials() {
   static const std::vector<Monomials> table = [] {
     std::vector<Monomials> all;
-    for (int cell = 0; cell < kSide * kSide; ++cell) {
-      const double x = static_cast<double>(cell / kSide - kReach) / kReach;
-      const double y = static_cast<double>(cell % kSide - kReach) / kReach;
+    for (int cell = 0; cell < kReachedSide * kReachedSide; ++cell) {
+      const double x = static_cast<double>(cell / kReachedSide - kReach) / kReach;
+      const double y = static_cast<double>(cell % kReachedSide - kReach) / kReach;
       Monomials& here = all.emplace_back();
       for (int degree = 0; degree <= 4 && x * x + y * y <= 1.0; ++degree) {
         for (int b = 0; b <= degree; ++b)
@@ -111,10 +111,10 @@ const std::vector<Monomials>& monomials() {
   return table;
 }
 
-/// The quadratic that fits `values` best in the cells around a cell that are more than `cut` layers deep.
-/// None where they are few, or not all are like() the cell.
+/// The quadratic that fits the squares of `roots` best in the cells around a cell that are more than `cut`
+/// layers deep. None where they are few, or not all are like() the cell.
 template <class Like>
-std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int cut, const ArrayXd& values,
+std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int cut, const ArrayXd& roots,
                           const Like& like) {
   Monomials moments{};
   std::array<double, kTerms.size()> sums{};
@@ -124,11 +124,11 @@ std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int
   for (Index k = std::max<Index>(0, i - kReach); k <= std::min(grid.n1 - 1, i + kReach); ++k) {
     for (Index l = std::max<Index>(0, j - kReach); l <= std::min(grid.n2 - 1, j + kReach); ++l) {
       const Index other = k * grid.n2 + l;
-      const Monomials& at = around[(k - i + kReach) * kSide + l - j + kReach];
+      const Monomials& at = around[(k - i + kReach) * kReachedSide + l - j + kReach];
       if (at[0] == 0.0) continue;
       if (like(other) != like(cell)) return std::nullopt;
       if (depth[static_cast<std::size_t>(other)] <= cut) continue;
-      const double value = values[other];
+      const double value = roots[other] * roots[other];
       for (std::size_t m = 0; m < at.size(); ++m) moments[m] += at[m];
       for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += at[m] * value;
     }
@@ -151,7 +151,8 @@ double root(double square) { return std::sqrt(std::max(0.0, square)); }
 /// cells.
 class Edge {
  public:
-  explicit Edge(ArrayXd solved) : solved_(std::move(solved)), square_(solved_.square()) {}
+  /// solved: the field, kept by reference.
+  explicit Edge(const ArrayXd& solved) : solved_(solved) {}
 
   /// A cell within kCut layers of the edge takes the fit to whole cells; every other one as far again within
   /// those tries it out, by whole cells as far from it.
@@ -159,12 +160,12 @@ class Edge {
   void add(const Grid& grid, Index cell, const Depths& depth, const Like& like) {
     const bool is_cut = depth[static_cast<std::size_t>(cell)] <= kCut;
     if (!is_cut && (cell / grid.n2 + cell % grid.n2) % 2 != 0) return;
-    const auto fit = fit_at(grid, cell, depth, is_cut ? kCut : 2 * kCut, square_, like);
+    const auto fit = fit_at(grid, cell, depth, is_cut ? kCut : 2 * kCut, solved_, like);
     if (!fit) return;
     if (is_cut) {
       cut_.push_back({cell, *fit, solved_[cell]});
     } else {
-      missed_ += std::pow((fit->value - square_[cell]) / fit->spread, 2);
+      missed_ += std::pow((fit->value - solved_[cell] * solved_[cell]) / fit->spread, 2);
       tried_ += 1.0;
     }
   }
@@ -214,8 +215,7 @@ class Edge {
     Fit fit;
     double solved;
   };
-  ArrayXd solved_;
-  ArrayXd square_;
+  const ArrayXd& solved_;
   std::vector<Cut> cut_;
   double missed_ = 0.0;  ///< sum of squares, over the fit's spread
   double tried_ = 0.0;   ///< how many cells
@@ -251,7 +251,9 @@ Sharpened sharpened(const solver::Solution& solution) {
   const double ring = solution.resolution.slip_width;
   const bool has_front = !law.factors && ring >= kNarrowestRing;
   Edge edge(p);
-  Edge front(law.bound(p) - solver::norms(solution.traction));
+  const ArrayXd missing =
+      ArrayXd::NullaryExpr(p.size(), [&](Index cell) { return law.bound(p, cell) - size(cell); });
+  Edge front(missing);
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const auto k = static_cast<std::size_t>(cell);
     // One layer outside carries what the fit leaves over.
