@@ -91,6 +91,9 @@ Allowed allowed_anyway(const Examination& e) {
   allowed.traction_cells =
       allowed_in_cells(c.grid, c.friction_bound.maxCoeff(), traction_deviation(e), y.mesh.tractions,
                        kLargestDraw * y.noise_size + kOtherDraws * (c.traction_rounding + c.bound_rounding));
+  // A part of a cell may carry anything up to a bound that does not vanish at the edge.
+  if (e.scene.friction.kind == solver::FrictionKind::tresca)
+    allowed.traction_cells += c.friction_bound * (1.0 - y.regions.inner);
   if (y.pressure) {
     allowed.pressure_cells =
         allowed_in_cells(c.grid, y.pressure->values.maxCoeff(), y.pressure->deviation, y.mesh.pressures,

@@ -1,6 +1,7 @@
 // Fields under laws of friction that do not follow the pressure, and fields under the wrong one of them.
 
 #include "convergence/check/tests/checked_field.hpp"
+#include "solver/grid/grid_transfer.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -56,6 +57,18 @@ TEST(CheckFrictionLaw, FindsAStrongerInterfaceBadOnCoarseMeshes) {
       }
     }
   }
+}
+
+// A cell of which the contact covers a part may carry that part of the strength.
+TEST(CheckFrictionLaw, LeavesCellsOpenThatTheEdgeCuts) {
+  Settings off_centre = kTresca;
+  off_centre.insert(off_centre.end(), {"grid.extent=[1.9564e-3,1.9564e-3]", "upper.at=[5.223e-5,-2.555e-5]"});
+  const solver::Scene scene = under(off_centre, 32, 0.7);
+  const solver::Solution fine = solver::solve(under(off_centre, 96, 0.7));
+  solver::Solution mean = solver::solve(scene);
+  mean.pressure = restrict_to(mean.grid, fine.grid, fine.pressure);
+  mean.traction = restrict_to(mean.grid, fine.grid, fine.traction);
+  find_good(rows_of(mean), scene);
 }
 
 TEST(CheckFrictionLaw, NamesAnotherExponentAndTheMeanPressure) {
