@@ -127,6 +127,9 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   // A program that solves this grid's problem knows its own sums and its own twist.
   const bool discrete =
       e.constant_cells && keeps_friction_bound(e.contact) && e.deviation.gap <= allowed.discrete_gap;
+  // Constant cells leave the motion open only as far as the iteration leaves the tractions open.
+  const double off = e.deviation.tractions / y.mesh.deviation.tractions;
+  const double unfinished = discrete ? 0.0 : e.constant_cells ? std::min(1.0, off) : 1.0;
   const auto load = [&](double measured, double of_sum) {
     return std::max(discrete ? 0.0 : kWholeMesh * measured, of_sum) + sums;
   };
@@ -139,7 +142,7 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
       kNormalTolerance + kWholeMesh * y.mesh.deviation.pressure +
       kOtherDraws * (e.contact.bound_rounding.sum() + y.noise_size.sum()) / e.contact.friction_bound.sum();
   allowed.motion =
-      (discrete ? 0.0 : kWholeMesh * y.mesh.deviation.motion) + quadrature + by_chance(&Deviation::motion);
+      unfinished * kWholeMesh * y.mesh.deviation.motion + quadrature + by_chance(&Deviation::motion);
   allowed.tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
   allowed.inside = kWholeMesh * y.mesh.deviation.inside + by_chance(&Deviation::inside);
   allowed.friction =

@@ -136,35 +136,49 @@ class Trial {
             fitted.coefficients[fitted.coefficients.size() - 1]};
   }
 
-  /// The multiple of K13 and K23 that fits best, one more coefficient in which slip is linear.
-  Assumption best_coupling() const {
-    std::vector<ArrayXd> motions = motions_;
-    motions.push_back(-by_pressure_);
-    const solver::FittedMotion fitted =
-        solver::fit_motion(elastic_ - imposed_, traction_, at_least(bound_), motions);
-    const double part = fitted.coefficients[fitted.coefficients.size() - 1];
-    return {.name = fmt::format("the kernels K13 and K23 times {:.3g}", part), .by_pressure = part};
+  /// The kernels K13 and K23 times the factor that fits best.
+  std::optional<Assumption> best_coupling() const {
+    const double times = best_multiple(by_pressure_);
+    constexpr double kNear = 0.05;
+    if (!(distance_from_named(times) > kNear)) return std::nullopt;
+    return Assumption{.name = fmt::format("the kernels K13 and K23 times {:.3g}", times),
+                      .by_pressure = times};
   }
 
-  /// The Poisson's ratio that fits best, one more coefficient in which slip is linear; none where no body has
-  /// it.
+  /// The kernel K12 times the factor that fits best.
+  std::optional<Assumption> best_cross() const {
+    const double times = best_multiple(pair_.poisson_compliance * u_.cross);
+    constexpr double kNear = 0.1;
+    if (!(distance_from_named(times) > kNear)) return std::nullopt;
+    return Assumption{.name = fmt::format("the cross kernel K12 times {:.3g}", times), .cross = times};
+  }
+
+  /// The Poisson's ratio that fits best; none where no body has it.
   std::optional<Assumption> best_poisson_ratio() const {
-    std::vector<ArrayXd> motions = motions_;
-    motions.push_back(-(u_.poisson + u_.cross));
-    const ArrayXd without =
-        elastic_ - pair_.poisson_compliance * (u_.poisson + u_.cross) + by_pressure_ - imposed_;
-    const solver::FittedMotion fitted = solver::fit_motion(without, traction_, at_least(bound_), motions);
-    const double compliance = fitted.coefficients[fitted.coefficients.size() - 1];
-    const double ratio = compliance / pair_.shear_compliance;
-    if (!(ratio > 0.0 && ratio <= 0.5 && pair_.poisson_compliance > 0.0)) return std::nullopt;
-    const double change = compliance / pair_.poisson_compliance;
-    return Assumption{
-        .name = fmt::format("a Poisson's ratio of {:.3g} in place of {:.3g}", ratio, ratio / change),
-        .poisson = change,
-        .cross = change};
+    const double change = best_multiple(pair_.poisson_compliance * (u_.poisson + u_.cross));
+    const double own = pair_.poisson_compliance / pair_.shear_compliance;
+    const double ratio = change * own;
+    if (!(ratio > 0.0 && ratio <= 0.5 && own > 0.0)) return std::nullopt;
+    return Assumption{.name = fmt::format("a Poisson's ratio of {:.3g} in place of {:.3g}", ratio, own),
+                      .poisson = change,
+                      .cross = change};
   }
 
  private:
+  /// The factor of a part of the displacement that fits best, one more coefficient in which slip is linear.
+  double best_multiple(const ArrayXd& part) const {
+    std::vector<ArrayXd> motions = motions_;
+    motions.push_back(-part);
+    const solver::FittedMotion fitted =
+        solver::fit_motion(elastic_ + by_pressure_ - part - imposed_, traction_, at_least(bound_), motions);
+    return fitted.coefficients[fitted.coefficients.size() - 1];
+  }
+
+  /// From the factors of kernels that have names: missing, right and of the wrong sign.
+  static double distance_from_named(double factor) {
+    return std::abs(factor - std::clamp(std::round(factor), -1.0, 1.0));
+  }
+
   /// The bound, raised to |q| where |q| exceeds it: otherwise the gap could be negative.
   ArrayXd at_least(const ArrayXd& bound) const { return bound.max(solver::norms(traction_)); }
 
@@ -192,13 +206,11 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
       {.name = "the kernels K11 and K22 exchanged", .poisson = 0.0, .exchanged = 1.0},
       {.name = "a Poisson's ratio of zero", .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
+  if (const auto times = trial.best_cross()) assumptions.push_back(*times);
   if (trial.coupled()) {
     assumptions.push_back({.name = "the kernels K13 and K23 missing", .by_pressure = 0.0});
     assumptions.push_back({.name = "the kernels K13 and K23 of the wrong sign", .by_pressure = -1.0});
-    const auto assumed = trial.best_coupling();
-    constexpr double kNear = 0.05;  // to a multiple that has a name: 0, 1 and -1
-    const double apart = std::abs(assumed.by_pressure - std::round(assumed.by_pressure));
-    if (apart > kNear) assumptions.push_back(assumed);
+    if (const auto times = trial.best_coupling()) assumptions.push_back(*times);
   }
   std::vector<Hypothesis> tried;
   tried.reserve(assumptions.size());
@@ -220,10 +232,12 @@ Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double
   const Trial trial(contact, load);
   const Hypothesis right = trial.of(Assumption{.name = "as it should be"});
   std::vector<Hypothesis> tried = half_spaces ? try_kernels(trial) : std::vector<Hypothesis>{};
-  const auto best = std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
+  // Where hardly any cell sticks, the slipping ones show the kernel.
+  const auto shown = right.stick_gap > kExplains * right.gap ? &Hypothesis::stick_gap : &Hypothesis::gap;
+  const auto best = std::ranges::min_element(tried, {}, shown);
   std::optional<Hypothesis> kernel;
-  const bool explains = best != tried.end() && best->stick_gap <= kExplains * right.stick_gap;
-  if (explains && right.stick_gap > kNoStickGap) kernel = *best;
+  const bool explains = best != tried.end() && (*best).*shown <= kExplains * right.*shown;
+  if (explains && right.*shown > kNoStickGap) kernel = *best;
   std::optional<Hypothesis> with_friction;
   if (friction) {
     with_friction = trial.of(*friction);

@@ -21,17 +21,18 @@ struct Hypothesis {
 struct Diagnosis {
   Hypothesis reference_kernel;         ///< with the right kernel and friction
   std::vector<Hypothesis> tried;       ///< mistakes that solvers make
-  std::optional<Hypothesis> kernel;    ///< the one of them that explains the stick area
+  std::optional<Hypothesis> kernel;    ///< the one that explains the stick area, or else the gap
   std::optional<Hypothesis> friction;  ///< the friction that was used
   /// With that kernel, or else the right one, only slipping cells break the law.
   bool stick_area_explained;
 };
 
 /// Tries wrong kernels on a contact that breaks Coulomb's law (K12 mirrored as an even function, missing, of
-/// the wrong sign; K11 and K22 exchanged; another Poisson's ratio, or zero; K13 and K23 missing or of the
-/// wrong sign), and the friction that its slip ring shows, if it is given. allowed: the gap over
-/// energy that its mesh explains. half_spaces: whether the kernels are those of half-spaces; of other bodies
-/// no wrong kernel is tried. Displacements are summed directly, in large contacts at some of the cells.
+/// the wrong sign, times a factor; K11 and K22 exchanged; another Poisson's ratio, or zero; K13 and K23
+/// missing, of the wrong sign, times a factor), and the friction that its slip ring shows, if it is given.
+/// allowed: the gap over energy that its mesh explains. half_spaces: whether the kernels are those of
+/// half-spaces; of other bodies no wrong kernel is tried. Displacements are summed directly, in large
+/// contacts at some of the cells.
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
                    const std::optional<OtherFriction>& friction = {}, bool half_spaces = true);
 

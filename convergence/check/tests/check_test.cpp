@@ -395,5 +395,28 @@ TEST(Check, FindsMistakesInThePressuresTangentialDisplacement) {
   find_bad(solved(exchanged), scene, HasSubstr("K13 and K23 of the wrong sign"));
 }
 
+// Bodies whose shear compliances 1/G and nu/G differ by half as much, with the same sums, move the surfaces
+// half as far by pressure, and as far by all else. Under the double displacement hardly any cell sticks.
+TEST(Check, DeterminesThePartOfThePressuresTangentialDisplacement) {
+  const solver::Scene whole = scene_of("dissimilar");
+  solver::Scene half = whole;
+  const auto shear = [](const solver::Material& m) {
+    return 2.0 * (1.0 + m.poisson_ratio) / m.young_modulus;
+  };
+  const std::array compliance{shear(whole.lower), shear(whole.upper)};
+  const std::array poisson{compliance[0] * whole.lower.poisson_ratio,
+                           compliance[1] * whole.upper.poisson_ratio};
+  const auto nearer = [](const std::array<double, 2>& of, std::size_t k) {
+    return 0.75 * of[k] + 0.25 * of[1 - k];
+  };
+  for (const std::size_t k : {0U, 1U}) {
+    solver::Material& body = k == 0 ? half.lower : half.upper;
+    body.poisson_ratio = nearer(poisson, k) / nearer(compliance, k);
+    body.young_modulus = 2.0 * (1.0 + body.poisson_ratio) / nearer(compliance, k);
+  }
+  find_bad(solved(half), whole, HasSubstr("K13 and K23 times 0.5"));
+  find_bad(solved(whole), half, HasSubstr("K13 and K23 times 2"));
+}
+
 }  // namespace
 }  // namespace slipstick::convergence
