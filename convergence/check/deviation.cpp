@@ -88,8 +88,8 @@ struct PowerShown {
 };
 
 PowerShown power_shown(const GivenContact& c) {
-  constexpr double kExponentStep = 0.01;  // of exponents,
-  constexpr double kLargestExponent = 4;  // from 0
+  constexpr int kExponents = 400;  // from 0 to 4
+  constexpr double kExponentStep = 0.01;
   std::vector<Index> cells;
   const ArrayXd size = solver::norms(c.traction);
   for (Index cell = 0; cell < size.size(); ++cell) {
@@ -103,7 +103,8 @@ PowerShown power_shown(const GivenContact& c) {
   };
   const Highest own = highest_over(c.friction_bound);
   PowerShown best{.multiple = std::exp(own.value), .cells_of_multiple = own.cells};
-  for (double n = 0.0; n <= kLargestExponent; n += kExponentStep) {
+  for (int k = 0; k <= kExponents; ++k) {
+    const double n = k * kExponentStep;
     const Highest found = highest_over(c.pressure.pow(n));
     if (found.cells > best.cells) {
       best.exponent = n;

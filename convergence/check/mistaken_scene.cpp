@@ -52,7 +52,8 @@ std::vector<Mistake> mistakes_of(const Scene& scene) {
     change(mistake.scene);
     mistakes.push_back(std::move(mistake));
   };
-  for (const auto& [member, name] : kBodies) {
+  for (const Body& each : kBodies) {
+    const auto member = each.member;
     const Material& body = scene.*member;
     if (!std::isinf(body.young_modulus)) {
       add("the compliance of one body only", [&](Scene& s) {
@@ -60,9 +61,9 @@ std::vector<Mistake> mistakes_of(const Scene& scene) {
       });
     }
     if (!body.coating) continue;
-    add(fmt::format("the layer on the {} body ignored", name),
+    add(fmt::format("the layer on the {} body ignored", each.name),
         [&](Scene& s) { (s.*member).coating.reset(); });
-    add(fmt::format("the constants of the {} body and its layer exchanged", name), [&](Scene& s) {
+    add(fmt::format("the constants of the {} body and its layer exchanged", each.name), [&](Scene& s) {
       Material& other = s.*member;
       std::swap(other.young_modulus, other.coating->young_modulus);
       std::swap(other.poisson_ratio, other.coating->poisson_ratio);
@@ -72,7 +73,8 @@ std::vector<Mistake> mistakes_of(const Scene& scene) {
     add("the layer on the other body", [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
   if (scene.layer.kind != nullptr)
     add("the layer between the bodies ignored", [](Scene& s) { s.layer = {}; });
-  for (const auto& [factor, name] : {std::pair{2.0, "half"}, std::pair{0.5, "twice"}}) {
+  for (const double factor : {2.0, 0.5}) {
+    const char* const name = factor > 1.0 ? "half" : "twice";
     add(fmt::format("{} the compliance of the pair", name), [&](Scene& s) {
       for (const Body& body : kBodies) (s.*body.member).young_modulus *= factor;
     });

@@ -87,23 +87,24 @@ struct Fit {
 
 /// x^a y^b with a + b <= 4, by rising a + b and then b; the first six are the terms of a quadratic.
 using Monomials = std::array<double, 15>;
-constexpr std::size_t index_of(int a, int b) {
-  return static_cast<std::size_t>((a + b) * (a + b + 1) / 2 + b);
-}
+constexpr std::size_t index_of(std::size_t a, std::size_t b) { return (a + b) * (a + b + 1) / 2 + b; }
 constexpr int kReachedSide = 2 * kReach + 1;
-constexpr std::array<std::array<int, 2>, 6> kTerms{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
+constexpr std::array<std::array<std::size_t, 2>, 6> kTerms{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
 
 /// The monomials of cells by their rows and columns from a cell, kReach at most; zeros beyond that distance.
 const std::vector<Monomials>& monomials() {
   static const std::vector<Monomials> table = [] {
     std::vector<Monomials> all;
     for (int cell = 0; cell < kReachedSide * kReachedSide; ++cell) {
-      const double x = static_cast<double>(cell / kReachedSide - kReach) / kReach;
-      const double y = static_cast<double>(cell % kReachedSide - kReach) / kReach;
+      const int row = cell / kReachedSide;
+      const int column = cell % kReachedSide;
+      const double x = static_cast<double>(row - kReach) / kReach;
+      const double y = static_cast<double>(column - kReach) / kReach;
       Monomials& here = all.emplace_back();
-      for (int degree = 0; degree <= 4 && x * x + y * y <= 1.0; ++degree) {
-        for (int b = 0; b <= degree; ++b)
-          here[index_of(degree - b, b)] = std::pow(x, degree - b) * std::pow(y, b);
+      for (std::size_t degree = 0; degree <= 4 && x * x + y * y <= 1.0; ++degree) {
+        for (std::size_t b = 0; b <= degree; ++b)
+          here[index_of(degree - b, b)] =
+              std::pow(x, static_cast<double>(degree - b)) * std::pow(y, static_cast<double>(b));
       }
     }
     return all;
