@@ -310,8 +310,9 @@ FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const s
 Errors compare(const solver::Solution& solution, const Oracle& oracle) {
   const solver::ThreadPool threads(solution.threads);
   const bool fields = solution.detail == solver::Detail::all;
-  const ExactFields exact = fields ? exact_fields(oracle, solution.grid) : ExactFields{};
+  // sharpened() needs two fields while it runs: before the exact fields exist, so that peak memory stays.
   const Sharpened sharp = fields && oracle.shear ? sharpened(solution) : Sharpened{};
+  const ExactFields exact = fields ? exact_fields(oracle, solution.grid) : ExactFields{};
   return {
       .twist = relative_error(solution.twist_angle, oracle.twist_angle),
       .moment = relative_error(solution.moment, oracle.moment),
