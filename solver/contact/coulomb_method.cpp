@@ -200,14 +200,10 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                            TangentialProblem problem, const CoulombOptions& options) {
   require_valid(problem, grid);
   if ((problem.friction_bound == 0.0).all() || is_at_rest(problem)) return at_rest(grid, problem);
-  NewtonOptions newton{.tolerance = options.tolerance,
-                       .max_applications = options.max_applications,
-                       .refine_multipliers = options.refine_motion};
-  if (options.progress) {
-    newton.progress = [&](long applications, double gap) {
-      options.progress(static_cast<int>(applications), gap);
-    };
-  }
+  const NewtonOptions newton{.tolerance = options.tolerance,
+                             .max_applications = options.max_applications,
+                             .refine_multipliers = options.refine_motion,
+                             .progress = options.progress};
   const TangentialProblem loads{.friction_bound = problem.friction_bound,
                                 .initial_displacement = {},
                                 .moment = problem.moment,

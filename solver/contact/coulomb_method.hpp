@@ -1,9 +1,8 @@
 #pragma once
 
-#include <functional>
-
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/newton/progress.hpp"
 
 namespace slipstick::solver {
 
@@ -11,8 +10,7 @@ struct CoulombOptions {
   double tolerance = 1e-8;  ///< on gap / (q.Kq/2), the certificate
   long max_applications = 5000;
   bool refine_motion = true;  ///< to the tolerance, at some applications more where it needs be
-  /// Called in each step on the finest grid with the applications there and gap over energy.
-  std::function<void(int applications, double gap)> progress = {};
+  Progress progress = {};     ///< on the finest grid
   OnCellsKnown on_cells_known = {};
 };
 

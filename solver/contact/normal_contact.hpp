@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/newton/progress.hpp"
 #include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
@@ -23,7 +23,7 @@ struct NormalOptions {
   double tolerance = 1e-10;     ///< on the complementarity gap
   bool refine_approach = true;  ///< to the tolerance, at some applications more where it needs be
   long max_applications = 2000;
-  std::function<void(long applications, double gap)> progress = {};  ///< on the finest grid
+  Progress progress = {};  ///< on the finest grid
   OnCellsKnown on_cells_known = {};
 };
 

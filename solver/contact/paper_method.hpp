@@ -1,17 +1,15 @@
 #pragma once
 
-#include <functional>
-
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/elasticity/linear_operator.hpp"
+#include "solver/newton/progress.hpp"
 
 namespace slipstick::solver {
 
 struct PaperOptions {
   double tolerance = 1e-8;  ///< epsilon of Eq. (26) over the sum of mu p
   int max_iterations = 5000;
-  /// Called now and then with the iteration and its change over the tolerance asked for.
-  std::function<void(int iteration, double change)> progress;
+  Progress progress = {};  ///< iterations and the change of Eq. (26)
 };
 
 /// The algorithm of Gradinaru and Spinu, Section 4, step by step, with the rotation field (-x2, x1) and the

@@ -1,18 +1,16 @@
 #pragma once
 
-#include <functional>
-
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/elasticity/linear_operator.hpp"
+#include "solver/newton/progress.hpp"
 
 namespace slipstick::solver {
 
 struct ProjectedGradientOptions {
   double tolerance = 1e-8;  ///< on the gap of the certificate, relative to q.Kq/2
   int max_iterations = 20000;
-  Eigen::ArrayXd start;  ///< tractions to begin with, projected first; empty: none
-  /// Called whenever the certificate is evaluated.
-  std::function<void(int iteration, double gap)> progress;
+  Eigen::ArrayXd start;    ///< tractions to begin with, projected first; empty: none
+  Progress progress = {};  ///< iterations and the certificate's gap
 };
 
 /// Coulomb's law as the minimum of q.Kq/2 + g.q (less phi t.q where the twist phi is imposed) over the

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <limits>
 #include <string>
 
 #include "solver/newton/newton_state.hpp"
+#include "solver/newton/progress.hpp"
 #include "solver/newton/tangent_problem.hpp"
 
 namespace slipstick::solver {
@@ -18,7 +18,7 @@ struct NewtonOptions {
   bool refine_multipliers = true;
   /// At least: a step gives each cell its state, which a start that is good enough may not have.
   int least_iterations = 0;
-  std::function<void(long applications, double gap)> progress = {};
+  Progress progress = {};
 };
 
 struct NewtonSummary {
