@@ -17,7 +17,7 @@
 #include "interfaces/laws/law_command.hpp"
 #endif
 #include "solver/grid/ranks.hpp"
-#include "solver/memory.hpp"
+#include "solver/model/memory.hpp"
 
 namespace {
 

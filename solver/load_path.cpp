@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
+#include "solver/history/load_parts.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/solve.hpp"
+#include "solver/step/contact_state.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -39,34 +41,6 @@ constexpr std::size_t kMaxPathSteps = 60;
 Quantities times(double factor, Quantities quantities) {
   for (const auto number : kQuantities) quantities.*number *= factor;
   return quantities;
-}
-
-double between(double from, double to, double part) { return from + part * (to - from); }
-
-/// The load that the contact carries, or its twist, as a load of this kind.
-TorsionLoad as_load(const TorsionLoad& kind, const StepEnd& at) {
-  if (std::holds_alternative<Twist>(kind)) return Twist{at.twist};
-  if (std::holds_alternative<Moment>(kind)) return Moment{at.moment};
-  return MomentRatio{at.moment_limit > 0.0 ? at.moment / at.moment_limit : 0.0};
-}
-
-/// The step with its tangential loads gone so far from those before.
-Step gone(const Step& step, const StepEnd& before, double part) {
-  Step at = step;
-  at.torsion = std::visit(
-      [&](const auto& to) -> TorsionLoad {
-        using Kind = std::remove_cvref_t<decltype(to)>;
-        return Kind{between(std::get<Kind>(as_load(step.torsion, before)).value, to.value, part)};
-      },
-      step.torsion);
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (step.displacement) {
-      (*at.displacement)[i] = between(before.displacement[i], (*step.displacement)[i], part);
-    } else {
-      at.force[i] = between(before.force[i], step.force[i], part);
-    }
-  }
-  return at;
 }
 
 /// The normal load, and a tangential one.
@@ -191,23 +165,6 @@ bool depends_on_path(const Scene& scene, const Model& model) {
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
   const bool similar = !model.pressure_coupling || !model.law->couples();
   return !(one_pressure && similar && !model.forces && has_axis(scene));
-}
-
-std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous,
-                           const StepEnd& before) {
-  const int parts = scene.substeps;
-  const bool presses = previous != nullptr && previous->normal && previous->normal != step.normal;
-  const int pressing = presses ? parts / 2 : 0;
-  std::vector<Step> loads;
-  for (int k = 1; k <= pressing; ++k) {
-    loads.push_back(gone(step, before, 0.0));
-    loads.back().normal = between(*previous->normal, *step.normal, static_cast<double>(k) / pressing);
-  }
-  for (int k = pressing + 1; k < parts; ++k) {
-    loads.push_back(gone(step, before, static_cast<double>(k - pressing) / (parts - pressing)));
-  }
-  loads.push_back(step);
-  return loads;
 }
 
 PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)

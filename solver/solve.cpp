@@ -10,15 +10,18 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/elasticity/random_rounding.hpp"
 #include "solver/grid/threads.hpp"
-#include "solver/grid_edge.hpp"
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
+#include "solver/history/load_parts.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_path.hpp"
-#include "solver/model_solution.hpp"
-#include "solver/pressure.hpp"
-#include "solver/resolution.hpp"
-#include "solver/tractions.hpp"
-#include "solver/within_double.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
+#include "solver/model/within_double.hpp"
+#include "solver/step/describe_step.hpp"
+#include "solver/step/grid_edge.hpp"
+#include "solver/step/pressure.hpp"
+#include "solver/step/resolution.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -131,7 +134,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
   const bool pressed = solution.pressure_applications > 0.0;
-  const LookedAt parts{pressed ? solution.normal.part : 0.0, tangential.part};
+  const CandidateFraction parts{pressed ? solution.normal.part : 0.0, tangential.part};
   solution.predicted_bytes = predicted_memory(scene, model, parts).total();
   const RigidMotion motion = moved(before.motion, tangential);
   solution.loads = step;

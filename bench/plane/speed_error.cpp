@@ -14,7 +14,7 @@
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/studies/study_plan.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -5,8 +5,10 @@
 #include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"
 #include "convergence/results/exact_result.hpp"
-#include "solver/model_solution.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
+#include "solver/step/describe_step.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::bench {
 namespace {

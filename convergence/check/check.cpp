@@ -11,7 +11,7 @@
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/contact/stick_front.hpp"
-#include "solver/model_solution.hpp"
+#include "solver/step/describe_step.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -10,9 +10,9 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/pressure.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -7,6 +7,7 @@
 #include "convergence/check/diagnosis.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -10,7 +10,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/input/field_file.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {

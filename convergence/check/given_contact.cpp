@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/pressure.hpp"
 #include "solver/scene/surface.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/to_dimensionless.hpp"
 #include "solver/solve.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "convergence/check/foreign_field.hpp"
-#include "solver/model.hpp"
-#include "solver/tractions.hpp"
+#include "solver/model/model.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::convergence {
 

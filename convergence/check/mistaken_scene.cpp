@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solver/input/input_error.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "convergence/check/mistaken_scene.hpp"
 #include "convergence/oracle/errors.hpp"
-#include "solver/model_solution.hpp"
+#include "solver/step/describe_step.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -3,12 +3,13 @@
 #include <utility>
 
 #include "solver/contact/fitted_motion.hpp"
-#include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model_solution.hpp"
-#include "solver/pressure.hpp"
-#include "solver/resolution.hpp"
-#include "solver/tractions.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/step/contact_state.hpp"
+#include "solver/step/describe_step.hpp"
+#include "solver/step/pressure.hpp"
+#include "solver/step/resolution.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/scene/scene_keys.hpp"
 
 namespace slipstick::convergence {

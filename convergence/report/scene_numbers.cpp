@@ -13,7 +13,7 @@
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/load_path.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/within_double.hpp"
+#include "solver/model/within_double.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -8,7 +8,7 @@
 #include "convergence/results/result.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 

@@ -20,8 +20,9 @@
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
-#include "solver/memory.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory.hpp"
+#include "solver/model/memory_plan.hpp"
 
 namespace slipstick::convergence {
 namespace {

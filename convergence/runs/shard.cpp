@@ -11,7 +11,8 @@
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -5,9 +5,9 @@
 #include "convergence/exchange/program_solve.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/elasticity/random_rounding.hpp"
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/within_double.hpp"
+#include "solver/model/within_double.hpp"
 
 namespace slipstick::convergence {
 namespace {

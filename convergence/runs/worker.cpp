@@ -14,7 +14,7 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/memory.hpp"
+#include "solver/model/memory.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -10,9 +10,11 @@
 #include "convergence/results/exact_result.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
-#include "solver/grid_edge.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/step/grid_edge.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -13,7 +13,7 @@
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_path.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

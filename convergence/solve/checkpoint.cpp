@@ -10,7 +10,7 @@
 #include "convergence/results/json_text.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/system/machine.hpp"
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/elasticity/linear_operator.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

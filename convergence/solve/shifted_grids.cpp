@@ -11,7 +11,7 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {

@@ -19,7 +19,7 @@
 #include "convergence/solve/uncertainty.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/cache/solve_cache.hpp"
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {

@@ -44,7 +44,7 @@ mutant(rotation_as_printed
 
 # Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).
 mutant(frozen_slip_directions
-  FILE solver/tractions.cpp
+  FILE solver/step/tractions.cpp
   FIND [[if (scene.method == Method::coulomb) {]]
   REPLACE [[if (scene.method == Method::coulomb) {
     return solve_by_paper_method(*elastic.make(part.grid(), tangential_kernel()), problem,
@@ -85,7 +85,7 @@ mutant(masing_less_than_twice
 
 # The energy that a step's slip loses, against the pressure before the step.
 mutant(dissipated_against_the_old_pressure
-  FILE solver/model_solution.cpp
+  FILE solver/step/describe_step.cpp
   FIND [[const ArrayXd& bound = loads.problem.friction_bound;]]
   REPLACE [[static ArrayXd kept;
   const ArrayXd bound = kept.size() == 0 ? loads.problem.friction_bound : kept;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/input/tests/complaint.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/history/load_parts.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"
 

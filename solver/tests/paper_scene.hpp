@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "solver/model_solution.hpp"
+#include "solver/step/describe_step.hpp"
 
 namespace slipstick::solver {
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::solver {
 

@@ -4,7 +4,8 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/paper_method.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/step/pressure.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 

@@ -13,8 +13,9 @@
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -11,7 +11,7 @@
 #include "convergence/system/run_program.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {

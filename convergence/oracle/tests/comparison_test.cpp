@@ -10,7 +10,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {

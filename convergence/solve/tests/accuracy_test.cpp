@@ -13,7 +13,7 @@
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/tests/scratch_folder.hpp"

@@ -9,7 +9,7 @@
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

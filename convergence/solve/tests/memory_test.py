@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """memory_test.py PROGRAM: what a solve will take is known before it is taken. The doubles a cell by which it is
-predicted stand in solver/elasticity/elasticity.cpp and solver/model.cpp; memory_test.py PROGRAM --measure prints those of
+predicted stand in solver/elasticity/elasticity.cpp and solver/model/memory_plan.cpp; memory_test.py PROGRAM --measure prints those of
 processes beside them."""
 
 import itertools

@@ -17,7 +17,7 @@
 #include "convergence/studies/budget.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/tests/complaint.hpp"
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -6,7 +6,7 @@
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
 #include "solver/grid/mirror.hpp"
-#include "solver/model_solution.hpp"
+#include "solver/step/describe_step.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

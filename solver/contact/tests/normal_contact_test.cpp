@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/press.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::solver {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "solver/model/make_model.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {

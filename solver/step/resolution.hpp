@@ -5,7 +5,7 @@
 
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
-#include "solver/tractions.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::solver {
 

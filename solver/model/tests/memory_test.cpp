@@ -1,10 +1,11 @@
-#include "solver/memory.hpp"
+#include "solver/model/memory.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::solver {

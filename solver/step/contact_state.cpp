@@ -1,4 +1,4 @@
-#include "solver/history_state.hpp"
+#include "solver/step/contact_state.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/memory.hpp"
+#include "solver/model/memory.hpp"
 
 #include <fmt/core.h>
 

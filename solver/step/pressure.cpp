@@ -1,4 +1,4 @@
-#include "solver/pressure.hpp"
+#include "solver/step/pressure.hpp"
 
 #include <fmt/core.h>
 
@@ -8,6 +8,7 @@
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model/memory_plan.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/normal_contact.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 
 namespace slipstick::solver {
 

@@ -6,8 +6,8 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/contact/tangential_problem.hpp"
-#include "solver/history_state.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
+#include "solver/step/contact_state.hpp"
 
 namespace slipstick::solver {
 

@@ -12,7 +12,6 @@
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/scene/to_dimensionless.hpp"
-#include "solver/solution.hpp"
 
 namespace slipstick::solver {
 
@@ -73,43 +72,7 @@ struct Model : Dimensionless {
   std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };
 
-/// Whether the pressure moves the surfaces along each other where something would hold them.
-bool moves_by_pressure(const Scene& scene, const Model& model);
-
-/// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn
-/// and carries no force. is_first: no step before has left tractions.
-bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure, bool is_first);
-
-/// The part of the grid on which tractions are found under a pressure. before: a pressure whose tractions
-/// have to stay within it; empty: none.
-Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
-                        const Eigen::ArrayXd& before = {});
-
-/// Notes the omissions of traction_part() and has_translations() in the model.
-void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations);
-
 /// How the model's displacements are computed on a part of its grid.
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part);
-
-/// Throws InputError for a height map that cannot be used, a surface that cannot touch, an extent that is
-/// missing or, as is known before the solve, too small; OutOfMemory for cells that do not fit in memory.
-/// ranks: the processes that share its grid.
-Model make_model(const Scene& scene, const Ranks& ranks = {});
-
-/// Memory that solving the scene takes, in bytes, at most: operators, workspaces, fields.
-struct Memory {
-  double solver;  ///< operators and workspaces of the larger of the two problems
-  double fields;  ///< the model's and the solution's, and the program itself
-  double total() const { return solver + fields; }
-};
-/// Parts of the cells that Newton's method looks at for pressures and for tractions: known when coarser grids
-/// are solved.
-struct LookedAt {
-  double pressure = 1.0;
-  double tractions = 1.0;
-};
-Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& parts = {});
-/// Throws OutOfMemory where that does not fit.
-void require_memory(const Scene& scene, const Model& model, const LookedAt& parts);
 
 }  // namespace slipstick::solver

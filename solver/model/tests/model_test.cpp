@@ -1,4 +1,4 @@
-#include "solver/model.hpp"
+#include "solver/model/make_model.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <thread>
 #include <type_traits>
 
-#include "solver/pressure.hpp"
+#include "solver/step/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 

@@ -1,4 +1,4 @@
-#include "solver/grid_edge.hpp"
+#include "solver/step/grid_edge.hpp"
 
 #include <fmt/core.h>
 
@@ -8,9 +8,10 @@
 
 #include "solver/contact/full_coupling.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/pressure.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/tractions.hpp"
+#include "solver/step/tractions.hpp"
 
 #include <fmt/core.h>
 
@@ -11,6 +11,8 @@
 #include "solver/grid/mirror.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model/memory_plan.hpp"
+#include "solver/model/symmetry.hpp"
 
 namespace slipstick::solver {
 namespace {

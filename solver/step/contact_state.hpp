@@ -2,13 +2,11 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
 
 #include "solver/contact/limit_load.hpp"
-#include "solver/contact/normal_contact.hpp"
 #include "solver/solution.hpp"
 
-/// The state that one step of a history leaves to the next.
+/// The state of the contact that one step leaves to the next.
 namespace slipstick::solver {
 
 /// Motion since the first step began, and loads, at the end of a step; in SI units.
@@ -53,14 +51,6 @@ struct ContactState {
   double energy = 0.0;
   StepEnd end;
   OpenHistory open;
-};
-
-/// Where a history stands at the end of a step: all that the next one needs to give the same digits.
-struct HistoryState {
-  std::size_t finished = 0;  ///< steps, those of earlier cycles too
-  ContactState contact;
-  /// How its pressure was found, for a step under the same normal load. The pressure itself is contact's.
-  NormalSolution normal;
 };
 
 }  // namespace slipstick::solver

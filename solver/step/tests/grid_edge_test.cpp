@@ -1,7 +1,7 @@
 // Contacts that the grid's edge cuts off are refused; those that it does not are the same on every larger
 // grid of the same cells.
 
-#include "solver/grid_edge.hpp"
+#include "solver/step/grid_edge.hpp"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -11,6 +11,7 @@
 #include <regex>
 #include <utility>
 
+#include "solver/model/make_model.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 #include "solver/solution.hpp"
-#include "solver/tractions.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/model_solution.hpp"
+#include "solver/step/describe_step.hpp"
 
 #include <numbers>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "solver/grid/counted_area.hpp"
 #include "solver/grid/motion_field.hpp"
 #include "solver/grid/sweep.hpp"
-#include "solver/resolution.hpp"
+#include "solver/step/resolution.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "solver/history_state.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"
 

@@ -6,6 +6,8 @@
 #include <functional>
 #include <sstream>
 
+#include "solver/model/make_model.hpp"
+#include "solver/model/memory_plan.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 
 namespace slipstick::solver {
 

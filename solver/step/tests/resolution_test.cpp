@@ -1,4 +1,4 @@
-#include "solver/resolution.hpp"
+#include "solver/step/resolution.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,119 @@
+#include "solver/model/memory_plan.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "solver/elasticity/elasticity.hpp"
+#include "solver/grid/own_rows.hpp"
+#include "solver/model/memory.hpp"
+#include "solver/model/symmetry.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// Doubles a cell of the whole grid that a solve holds beside operators and workspaces. Measured, as all that
+/// follow, by convergence/solve/tests/memory_test.py.
+constexpr double kFieldsHeld = 3.2;
+/// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
+constexpr double kFieldsOfPart = 2.0;
+/// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
+constexpr double kFieldsAround = 12.0;
+constexpr double kFieldsAroundPressure = 9.3;  ///< alone, on the whole grid
+/// Doubles a cell of the whole grid that a pressure's solve holds beside operators and workspaces.
+constexpr double kFieldsOfPressure = 1.4;
+/// Doubles a cell of the part that the other methods than Coulomb's hold.
+constexpr double kFieldsOfOthers = 21.0;
+/// Doubles a cell of the whole grid of the step before.
+constexpr double kFieldsBefore = 37.0;
+/// Doubles a cell of the whole grid where pressure and tractions are solved in turn: Anderson's combination
+/// and guesses. They stand in for much of the step before.
+constexpr double kFieldsOfTurns = 58.0;
+constexpr double kFieldsBeforeTurns = 21.0;
+/// The program and its libraries, that for HDF5 included; where several processes share a grid MPI's too.
+double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
+double field_bytes(double fields, Index cells) {
+  return fields * sizeof(double) * static_cast<double>(cells);
+}
+double bytes_around(const Scene& scene, const Grid& grid) {
+  const bool pressure = scene.friction.is_frictionless() && scene.model == ModelChoice::full;
+  return field_bytes(pressure ? kFieldsAroundPressure : kFieldsAround, grid.cells());
+}
+
+/// Bytes. Below this size the memory check is skipped.
+constexpr double kLittleMemory = 0x1p26;
+
+void require_memory(const Scene& scene, const Grid& grid, double bytes) {
+  if (!scene.memory_limit && bytes < kLittleMemory) return;
+  const double most = memory_within(scene.memory_limit);
+  if (bytes < most) return;
+  throw OutOfMemory(
+      scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+      fmt::format("what fits in memory: this needs {} with operator = \"{}\", and {} {}; {} less",
+                  bytes_text(bytes), to_string(scene.op), bytes_text(most),
+                  scene.memory_limit ? "are allowed (--memory-limit)" : "are there",
+                  scene.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
+                  : scene.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
+                                                     : "fewer cells take"));
+}
+
+}  // namespace
+
+void require_memory_for_files(const Scene& scene) {
+  std::vector<std::filesystem::path> files{scene.pressure_file, scene.friction.map};
+  for (const Surface& surface : scene.surfaces) files.push_back(surface.file);
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = file.empty() ? 0 : std::filesystem::file_size(file, error);
+    const auto bytes = static_cast<double>(size);
+    if (error || bytes < kLittleMemory || bytes < memory_within(scene.memory_limit)) continue;
+    throw OutOfMemory(file.string(),
+                      fmt::format("holds {}; allowed: what fits in memory, {}", bytes_text(bytes),
+                                  bytes_text(memory_within(scene.memory_limit))));
+  }
+}
+
+void require_memory_around(const Scene& scene, const Grid& grid) {
+  require_memory(scene, grid, bytes_around(scene, grid));
+}
+
+Memory predicted_memory(const Scene& scene, const Model& model, const CandidateFraction& parts) {
+  const bool follows = scene.steps.size() > 1 || scene.cycles > 1;
+  const double before = model.shear_coupling ? kFieldsBeforeTurns : kFieldsBefore;
+  const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
+  const double kept = field_bytes((follows ? before : 0.0) + turns, model.grid.cells());
+  const Grid& part = model.pressure_part.grid();
+  const Elasticity on_part = elasticity(scene, model, model.pressure_part);
+  const double normal = scene.pressure == PressureModel::solved
+                            ? on_part.newton_bytes(part, normal_kernel(), parts.pressure)
+                            : 0.0;
+  // The pressure has the gap's mirrors, unless a file brings it; its tangential displacement has not those of
+  // torsion.
+  const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
+  const Grid& grid = whole ? model.grid : part;
+  const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
+  const double coupling =
+      moves_by_pressure(scene, model) ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
+  const bool newton = scene.method == Method::coulomb;
+  const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
+                            : scene.friction.is_frictionless()
+                                ? 0.0  // nothing is solved
+                                : elastic.newton_bytes(grid, tangential_kernel(), parts.tractions);
+  const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
+                                : field_bytes(kFieldsOfOthers, grid.cells());
+  const double pressed = normal + kept + field_bytes(kFieldsOfPressure, model.grid.cells());
+  const double held =
+      std::max(tangential, coupling) + kept + of_part + field_bytes(kFieldsHeld, model.grid.cells());
+  const double solver = std::max({normal, tangential, coupling});
+  return {solver, program_bytes(grid) + std::max({pressed, held, bytes_around(scene, model.grid)}) - solver};
+}
+
+void require_memory(const Scene& scene, const Model& model, const CandidateFraction& parts) {
+  require_memory(scene, model.grid, predicted_memory(scene, model, parts).total());
+}
+
+}  // namespace slipstick::solver
