@@ -115,7 +115,7 @@ class PressureOnGrid {
   template <typename Contains>
   Sweep cells_where(const Contains& contains) const {
     Sweep cells(grid_);
-    cells.assign(grid_.cells(), contains);
+    cells.assign(contains);
     return cells;
   }
   template <typename Contains>

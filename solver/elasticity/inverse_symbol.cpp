@@ -19,7 +19,7 @@ Grid padded(const Grid& grid, bool at_edge) {
   return {fast_length(grid.n1 + margin), fast_length(grid.n2 + margin), grid.h1, grid.h2};
 }
 
-std::vector<Index> frequencies(const Share& columns) {
+std::vector<Index> frequencies(const IndexRange& columns) {
   std::vector<Index> result(static_cast<std::size_t>(columns.count()));
   std::iota(result.begin(), result.end(), columns.first);
   return result;
@@ -68,7 +68,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
       throw std::invalid_argument("inverse symbol applied to a field of another size");
     }
     const auto each_row = [&](const auto& work) {
-      const Share own = transform_.own_samples();
+      const IndexRange own = transform_.own_samples();
       in_parts(transform_.threads(), fields_ * own.count(), [&](int thread, Index first, Index last) {
         for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());
       });
@@ -135,7 +135,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   Grid periodic_;
   Index fields_;
   std::array<double, 2> diagonal_;
-  Share columns_;  ///< of this rank
+  IndexRange columns_;  ///< of this rank
   SymbolTable table_;
   PlaneTransform transform_;
 };

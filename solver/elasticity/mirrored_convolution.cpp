@@ -128,14 +128,13 @@ FftwBuffer MirroredConvolution::kernel_spectrum(Component component, std::vector
 }
 
 RankTranspose MirroredConvolution::shared_matrix(const Grid& quadrant, Index column_groups) {
-  static_assert(RowBands::kRows % kLines == 0);
-  const RowBands bands(quadrant.n1, quadrant.ranks);
-  return {quadrant.ranks, groups(quadrant.n1, kLines), bands.rows_of_rank() / kLines, column_groups,
-          kLines * kLines};
+  static_assert(kRowsOfBand % kLines == 0);
+  return {quadrant.ranks, groups(quadrant.n1, kLines), rows_of_rank(quadrant.n1, quadrant.ranks) / kLines,
+          column_groups, kLines * kLines};
 }
 
-Share MirroredConvolution::own_row_groups(const Grid& quadrant) {
-  const Share own = own_rows(quadrant);
+IndexRange MirroredConvolution::own_row_groups(const Grid& quadrant) {
+  const IndexRange own = own_rows(quadrant);
   return {groups(own.first, kLines), groups(own.last, kLines)};
 }
 

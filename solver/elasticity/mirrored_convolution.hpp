@@ -54,7 +54,7 @@ class MirroredConvolution final : public LinearOperator {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
   }
   static RankTranspose shared_matrix(const Grid& quadrant, Index column_groups);
-  static Share own_row_groups(const Grid& quadrant);
+  static IndexRange own_row_groups(const Grid& quadrant);
   double* of_field(Index field) { return half_transformed_.data() + field * shared_.size(); }
   double* half_transformed(Index field, Index row_group) {
     return of_field(field) + (row_group - own_row_groups_.first) * shared_.row_step();
@@ -75,8 +75,8 @@ class MirroredConvolution final : public LinearOperator {
   Transform along2_;
   Index column_groups_;              ///< groups of kLines frequencies along x2
   std::vector<FftwBuffer> spectra_;  ///< of the distinct components: h1 rows for each group of columns
-  Share own_row_groups_;             ///< of this rank
-  Share own_column_groups_{};
+  IndexRange own_row_groups_;        ///< of this rank
+  IndexRange own_column_groups_{};
   RankTranspose shared_;                      ///< a block of kLines rows by kLines columns is an entry
   FftwBuffer half_transformed_;               ///< along x2 only: h2 rows for each field and group of rows
   FftwBuffer transformed_;                    ///< diagonal only: h1 rows for each group of columns

@@ -30,7 +30,7 @@ PlaneShape plane_of(const Grid& grid, bool tangential, bool symmetric) {
 }
 
 /// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.
-std::vector<Index> frequencies(Index t, const Share& columns) {
+std::vector<Index> frequencies(Index t, const IndexRange& columns) {
   std::vector<Index> result;
   for (Index k = columns.first; k < columns.last; ++k) result.push_back(k);
   for (Index k = columns.first; k < columns.last; ++k) result.push_back(t - k);
@@ -171,7 +171,7 @@ void MirroredInverseSymbol::apply(std::span<double> field) {
   }
   const Index transformed = tangential_ && !symmetric_ ? 2 : 1;
   const int threads = transform_.threads();
-  const Share own = transform_.own_samples();
+  const IndexRange own = transform_.own_samples();
   const auto each_row = [&](const auto& work) {
     in_parts(threads, transformed * own.count(), [&](int thread, Index first, Index last) {
       for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());

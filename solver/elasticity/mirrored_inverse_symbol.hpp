@@ -78,8 +78,8 @@ class MirroredInverseSymbol final : public InverseSymbol {
   Index t2_;
   Index half_;  ///< t2/2 + 1
   std::array<double, 2> diagonal_;
-  Share columns_;      ///< of this rank, of 0..t2/2
-  SymbolTable table_;  ///< those, then t2 less each of them
+  IndexRange columns_;  ///< of this rank, of 0..t2/2
+  SymbolTable table_;   ///< those, then t2 less each of them
   PlaneTransform transform_;
   Index scratch_;  ///< values that each thread has of the next
   FftwBuffer coefficients_;

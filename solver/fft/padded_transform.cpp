@@ -83,17 +83,17 @@ std::size_t PaddedTransform::field_size(const Grid& grid, Index columns, Index s
 
 /// A group of rows in a column is an entry.
 RankTranspose PaddedTransform::shared_matrix(const Grid& grid) {
-  static_assert(RowBands::kRows % kRows == 0);
-  return {grid.ranks, (grid.n1 + kRows - 1) / kRows, RowBands(grid.n1, grid.ranks).rows_of_rank() / kRows,
+  static_assert(kRowsOfBand % kRows == 0);
+  return {grid.ranks, (grid.n1 + kRows - 1) / kRows, rows_of_rank(grid.n1, grid.ranks) / kRows,
           half_length(grid.n2) + 1, 2 * kRows};
 }
 
-Share PaddedTransform::own_groups(const Grid& grid) {
-  const Share rows = own_rows(grid);
+IndexRange PaddedTransform::own_groups(const Grid& grid) {
+  const IndexRange rows = own_rows(grid);
   return {(rows.first + kRows - 1) / kRows, (rows.last + kRows - 1) / kRows};
 }
 
-Share PaddedTransform::own_columns(const Grid& grid) { return shared_matrix(grid).own_columns(); }
+IndexRange PaddedTransform::own_columns(const Grid& grid) { return shared_matrix(grid).own_columns(); }
 
 auto PaddedTransform::spectrum_of(int thread) -> Spectrum {
   Complex* const start = scratch(thread);

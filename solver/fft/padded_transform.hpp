@@ -49,7 +49,7 @@ class PaddedTransform {
   /// Frequencies along x2 that hold all of a real field, m2 + 1: first the even ones, then the odd ones.
   Index columns() const { return m2_ + 1; }
   /// Those of this rank.
-  static Share own_columns(const Grid& grid);
+  static IndexRange own_columns(const Grid& grid);
 
   /// From the fields' n1*n2 values each to their columns, and back: this rank's rows of them.
   void forward_rows(std::span<const double> fields);
@@ -90,7 +90,7 @@ class PaddedTransform {
   Index groups() const { return (grid_.n1 + kRows - 1) / kRows; }
   /// What goes from rank to rank, and of that the rows of this one.
   static RankTranspose shared_matrix(const Grid& grid);
-  static Share own_groups(const Grid& grid);
+  static IndexRange own_groups(const Grid& grid);
   /// Complex numbers that a field takes.
   static std::size_t field_size(const Grid& grid, Index columns, Index stride1);
   Complex* column(std::size_t field, Index column);
@@ -121,9 +121,9 @@ class PaddedTransform {
   std::vector<Complex> twiddle1_;  ///< w^j along x1, j < n1
   std::vector<Complex> twiddle2_;
   std::vector<double> zero_row_;
-  bool several_;          ///< ranks
-  RankTranspose shared_;  ///< where there are
-  Share own_groups_;      ///< of kRows rows
+  bool several_;           ///< ranks
+  RankTranspose shared_;   ///< where there are
+  IndexRange own_groups_;  ///< of kRows rows
   std::size_t field_size_;
   Index column_step_;                ///< from column to column while rows are carried
   Index group_step_;                 ///< then from group to group of a column's rows

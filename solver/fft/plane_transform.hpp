@@ -49,7 +49,7 @@ class PlaneTransform {
         threads_(threads),
         row_stride_(row_stride(shape)),
         columns_(shape.n2 / 2 + 1),
-        own_samples_(RowBands(shape.samples, shape.ranks).own_rows()),
+        own_samples_(own_rows(shape.samples, shape.ranks)),
         shared_(shared_matrix(shape)),
         field_size_(field_size(shape)),
         own_plane_(memory.size() < plane_size() ? FftwBuffer(plane_size()) : FftwBuffer()),
@@ -72,10 +72,10 @@ class PlaneTransform {
   int threads() const { return threads_; }
 
   /// The samples whose rows this rank carries.
-  const Share& own_samples() const { return own_samples_; }
+  const IndexRange& own_samples() const { return own_samples_; }
   /// Columns that it does.
-  static Share own_columns(const PlaneShape& shape) {
-    const Share batches = shared_matrix(shape).own_columns();
+  static IndexRange own_columns(const PlaneShape& shape) {
+    const IndexRange batches = shared_matrix(shape).own_columns();
     const Index columns = shape.n2 / 2 + 1;
     return {std::min(batches.first * kColumns, columns), std::min(batches.last * kColumns, columns)};
   }
@@ -115,7 +115,7 @@ class PlaneTransform {
   template <typename Work>
   void through_columns(Index fields, const Work& work) {
     for (Index field = 0; field < fields; ++field) shared_.to_columns(row(field, 0));
-    const Share own = shared_.own_columns();
+    const IndexRange own = shared_.own_columns();
     in_parts(threads_, own.count(), [&](int thread, Index begin, Index end) {
       double* const scratch = scratch_[count(thread)].data();
       const Index size = 2 * kColumns * shape_.n1;
@@ -162,8 +162,8 @@ class PlaneTransform {
   static Index row_stride(const PlaneShape& shape) { return shared_matrix(shape).row_step(); }
   /// What goes from rank to rank: a cache line is an entry.
   static RankTranspose shared_matrix(const PlaneShape& shape) {
-    RankTranspose shared{shape.ranks, shape.samples, RowBands(shape.samples, shape.ranks).rows_of_rank(),
-                         batches(shape), kLine};
+    RankTranspose shared{shape.ranks, shape.samples, rows_of_rank(shape.samples, shape.ranks), batches(shape),
+                         kLine};
     shared.pad = 1 - shape.ranks.number() * shared.columns_of_rank() % 2;
     return shared;
   }
@@ -204,7 +204,7 @@ class PlaneTransform {
   int threads_;
   Index row_stride_;
   Index columns_;
-  Share own_samples_;
+  IndexRange own_samples_;
   RankTranspose shared_;
   Index field_size_;  ///< reals from one field to the next
   FftwBuffer own_plane_;

@@ -18,7 +18,7 @@ struct RankTranspose {
   Index entry;
   Index pad = 0;  ///< entries that no rank has at the end of a row
 
-  Share own_columns() const { return ranks.own_share(columns); }
+  IndexRange own_columns() const { return ranks.own_share(columns); }
   Index columns_of_rank() const { return ranks.block_of(columns); }
   /// Numbers from one row of this rank to the next, and in all of them.
   Index row_step() const { return (ranks.number() * columns_of_rank() + pad) * entry; }

@@ -8,15 +8,14 @@ namespace slipstick::solver {
 using Eigen::ArrayXd;
 
 Packing::Packing(const Grid& grid, const Sweep& cells, Index components)
-    : grid_(Sweep::whole(grid)),
-      cells_(cells),
+    : cells_(cells),
       packed_(cells.packed()),
       place_(is_whole() ? 0 : grid.cells()),
       on_grid_(components * place_.size()) {
   if (place_.size() > 0 && cells.count() >= std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("cells to pack");
   if (!is_whole()) {
-    clear(grid_, place_);
+    clear(cells_, place_);
     cells_.each_with_place([&](Index first, Index last, Index place) {
       for (Index cell = first; cell < last; ++cell) place_[cell] = static_cast<std::uint32_t>(++place);
     });
@@ -39,7 +38,7 @@ void Packing::pack(const ArrayXd& from, ArrayXd& to) const {
 }
 
 void Packing::unpack(const ArrayXd& from, ArrayXd& to) const {
-  if (!is_whole()) clear(grid_, to);
+  if (!is_whole()) clear(cells_, to);
   cells_.each_with_place([&](Index first, Index last, Index place) {
     for (Index start = 0; start < to.size(); start += cells_.size(), place += packed_.size())
       to.segment(start + first, last - first) = from.segment(place, last - first);

@@ -51,11 +51,11 @@ class Packing {
   }
 
  private:
-  bool is_whole() const { return packed_.size() == grid_.size(); }
+  bool is_whole() const { return packed_.size() == cells_.size(); }
   void pack(const Eigen::ArrayXd& from, Eigen::ArrayXd& to) const;
   void unpack(const Eigen::ArrayXd& from, Eigen::ArrayXd& to) const;
 
-  Sweep grid_, cells_, packed_;  ///< all cells, those that are kept, and these packed
+  Sweep cells_, packed_;  ///< the set on the grid, and as it is stored
   std::shared_ptr<const Eigen::ArrayXd> coordinates_;
   // Where not all cells are kept:
   Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1; 0: nowhere

@@ -14,12 +14,12 @@ using Eigen::Index;
 
 class Communicator;
 
-/// The half-open range [first, last) that one process has of what several share.
-struct Share {
+/// The indices first, first + 1, ..., last - 1.
+struct IndexRange {
   Index first;
   Index last;
   Index count() const { return last - first; }
-  bool operator==(const Share&) const = default;
+  bool operator==(const IndexRange&) const = default;
 };
 
 /// The processes that solve one contact together, as one of them sees them: this process alone, or the ranks
@@ -43,11 +43,11 @@ class Ranks {
   bool first() const { return rank() == 0; }
 
   /// What one rank of so many has of a count, in equal blocks, the last ones smaller or empty.
-  static Share share(Index count, int rank, int number) {
+  static IndexRange share(Index count, int rank, int number) {
     const Index block = block_of(count, number);
     return {std::min(rank * block, count), std::min((rank + 1) * block, count)};
   }
-  Share own_share(Index count) const { return share(count, rank(), number()); }
+  IndexRange own_share(Index count) const { return share(count, rank(), number()); }
   Index block_of(Index count) const { return block_of(count, number()); }
 
   /// Makes a field of some rows whole on every rank, each of which has so many rows, the last ones fewer.

@@ -29,68 +29,64 @@ struct Lowest {
   }
 };
 
-/// Those cells that a loop visits, as intervals of neighbours: cells that carry no traction cost nothing.
-/// Sums are taken in bands of rows, see RowBands, and then in the order of the bands, whatever threads of the
-/// pool and processes of the grid share the bands: so no result depends on the number of either.
+/// A set of a field's cells, kept as intervals of neighbours, which loops and sums visit. Sums are taken band
+/// by band (own_rows.hpp) and then in the order of the bands, so that no result depends on the number of
+/// threads or ranks that share the bands.
 class Sweep {
  public:
-  /// No cell yet, and rows that nobody shares.
+  /// The empty set: of no cells, of the cells of a grid, or of cells that have no rows and one process.
   Sweep() = default;
-  /// No cell of a grid yet: intervals end with its rows, which its processes share.
-  explicit Sweep(const Grid& grid) : row_(grid.n2), ranks_(grid.ranks) {}
-  /// Cells where a field, one value a cell, is not zero.
+  explicit Sweep(const Grid& grid) : size_(grid.cells()), row_(grid.n2), ranks_(grid.ranks) {
+    set_bands(rows_of_band(grid.n1) * std::max<Index>(grid.n2, 1));
+  }
+  explicit Sweep(Index cells) : size_(cells), row_(cells) { set_bands(rows_of_band(cells, kCellsOfBand)); }
+
+  /// The cells where a field, of one value a cell, is not zero.
   template <typename Field>
   Sweep(const Grid& grid, const Field& field) : Sweep(grid) {
-    assign_nonzero(field);
+    assign([&](Index cell) { return field.coeff(cell) != 0; });
   }
-  /// Likewise for cells without rows: every process visits them all.
   template <typename Derived>
-  explicit Sweep(const Eigen::ArrayBase<Derived>& field) {
-    assign_nonzero(field);
+  explicit Sweep(const Eigen::ArrayBase<Derived>& field) : Sweep(field.size()) {
+    assign([&](Index cell) { return field.coeff(cell) != 0; });
   }
 
-  /// Over all cells, whatever they carry.
-  static Sweep whole(const Grid& grid) {
-    Sweep sweep(grid);
-    sweep.assign(grid.cells(), [](Index) { return true; });
-    return sweep;
-  }
-  static Sweep whole(Index cells) {
-    Sweep sweep;
-    sweep.assign(cells, [](Index) { return true; });
+  /// All cells.
+  template <typename Cells>
+  static Sweep whole(const Cells& cells) {
+    Sweep sweep(cells);
+    sweep.assign([](Index) { return true; });
     return sweep;
   }
 
-  /// The cells below `cells` for which contains(cell) is true.
+  /// The cells for which contains(cell) is true.
   template <typename Contains>
-  void assign(Index cells, const Contains& contains);
+  void assign(const Contains& contains);
 
-  /// Cells of the grid, and those that are visited, by all processes together.
+  /// Cells of the field, and cells in the set, on all ranks together.
   Index size() const { return size_; }
   Index count() const { return count_; }
 
-  /// Whether they lie in many small spots or have a ragged edge: intervals are many more than in a disc of as
-  /// many cells, which has 1.13 times the root of their number, or in a few such discs and rings.
+  /// True for many small spots or a ragged edge: there are more intervals than kIntervalsOfSmooth times
+  /// sqrt(count()). A disc has 1.13 sqrt(count()), a few discs or rings somewhat more.
   bool is_ragged() const { return is_ragged_; }
 
-  /// All of the cells of fields that hold these cells alone, one behind the other: in the same bands, which
-  /// have no rows.
+  /// All cells of a field that stores the cells of this set only, one after the other, in the same bands.
   Sweep packed() const;
 
-  /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
-  /// not throw.
+  /// work(first, last) for each interval [first, last) of cells, on several threads; it must not throw.
   template <typename Work>
   void each(const Work& work) const {
     each_with_place([&](Index first, Index last, Index) { work(first, last); });
   }
-  /// work(first, last, place) likewise, with the place of its first cell among all that are visited.
+  /// The same with work(first, last, place): `place` cells of the set come before `first`.
   template <typename Work>
   void each_with_place(const Work& work) const {
-    const Index parts = threads();
-    in_parts(threads(), parts, [&](int, Index first_part, Index last_part) {
+    const Index parts = threads(visited());
+    in_parts(static_cast<int>(parts), parts, [&](int, Index first_part, Index last_part) {
       const std::size_t begin = cut(first_part, parts);
-      Index place = place_ + before_[begin];
-      for (Index i = begin_[begin]; i < begin_[cut(last_part, parts)]; ++i) {
+      Index place = place_ + bands_[begin].visited;
+      for (Index i = bands_[begin].interval; i < bands_[cut(last_part, parts)].interval; ++i) {
         const auto [first, last] = intervals_[at(i)];
         work(first, last, place);
         place += last - first;
@@ -98,85 +94,78 @@ class Sweep {
     });
   }
 
-  /// work(first, last) for all cells of this process's rows, in as many parts as there are threads.
+  /// work(first, last) for all cells of this rank's rows, in as many parts as there are threads.
   template <typename Work>
   void each_own(const Work& work) const {
-    in_parts(threads(), own_.count(), [&](int, Index first, Index last) {
-      if (first < last) work(own_.first + first, own_.first + last);
+    const Index first_own = bands_[at(own_bands_.first)].cell;
+    const Index count = bands_[at(own_bands_.last)].cell - first_own;
+    in_parts(threads(count), count, [&](int, Index first, Index last) {
+      if (first < last) work(first_own + first, first_own + last);
     });
   }
 
-  /// The sum of what work(first, last, sum) adds to `sum`, which begins as Sum().
+  /// The sum of all that work(first, last, sum) adds to `sum`, which starts as Sum().
   template <typename Sum, typename Work>
   Sum sum(const Work& work) const {
-    const auto sum_of = [&](Index band) {
+    const auto sum_of = [&](std::size_t band) {
       Sum sum{};
-      for (Index i = begin_[at(band)]; i < begin_[at(band + 1)]; ++i) {
+      for (Index i = bands_[band].interval; i < bands_[band + 1].interval; ++i) {
         work(intervals_[at(i)].first, intervals_[at(i)].last, sum);
       }
       return sum;
     };
-    if (bands_ == 1 && !shared()) return sum_of(0);
-    std::array<Sum, RowBands::kMax> sums;
-    const Index parts = threads();
-    in_parts(threads(), parts, [&](int, Index first, Index last) {
+    if (band_count_ == 1 && !ranks_.several()) return sum_of(0);
+    std::array<Sum, kMaxBands> sums;
+    const Index parts = threads(visited());
+    in_parts(static_cast<int>(parts), parts, [&](int, Index first, Index last) {
       const std::size_t end = cut(last, parts);
-      for (std::size_t band = cut(first, parts); band < end; ++band) {
-        sums[band] = sum_of(static_cast<Index>(band));
-      }
+      for (std::size_t band = cut(first, parts); band < end; ++band) sums[band] = sum_of(band);
     });
-    if (shared()) ranks_.gather_shares(std::span(sums).first(at(bands_)));
+    if (ranks_.several()) ranks_.gather_shares(std::span(sums).first(at(band_count_)));
     Sum total = sums.front();
-    for (Index band = 1; band < bands_; ++band) total += sums[at(band)];
+    for (Index band = 1; band < band_count_; ++band) total += sums[at(band)];
     return total;
   }
 
  private:
-  struct Interval {
-    Index first;
-    Index last;
+  /// Where a band starts: its first cell, its first interval, and the cells visited by this rank before it.
+  struct Band {
+    Index cell = 0;
+    Index interval = 0;
+    Index visited = 0;
   };
-  /// Cells of a band, at least, where there are no rows.
+  /// Cells of the shortest band of a field without rows.
   static constexpr Index kCellsOfBand = 512;
   /// With fewer cells a second thread is not worth its start.
   static constexpr Index kCellsOfOneThread = 8 * kCellsOfBand;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  template <typename Field>
-  void assign_nonzero(const Field& field) {
-    assign(field.size(), [&](Index cell) { return field.coeff(cell) != 0; });
-  }
-  bool shared() const { return row_ > 0 && ranks_.several(); }
-  void set_bands(Index cells);
-  int threads() const { return visited_ < kCellsOfOneThread ? 1 : ThreadPool::available(); }
-  /// The first band of a part, or past the last one: as many cells of a band are visited as its rows have of
-  /// them, and each part gets about as many.
+  static int threads(Index cells) { return cells < kCellsOfOneThread ? 1 : ThreadPool::available(); }
+  Index visited() const { return bands_.back().visited; }
+  void set_bands(Index cells_of_band);
+  /// The first band of a part of the bands; for part == parts, the end. All parts visit about as many cells.
   std::size_t cut(Index part, Index parts) const {
-    const auto first = before_.begin() + own_bands_.first;
-    const auto last = before_.begin() + own_bands_.last;
     if (part == 0) return at(own_bands_.first);
     if (part == parts) return at(own_bands_.last);
-    return at(std::lower_bound(first, last, visited_ * part / parts) - before_.begin());
+    const auto first = bands_.begin() + own_bands_.first;
+    const auto last = bands_.begin() + own_bands_.last;
+    return at(std::ranges::lower_bound(first, last, visited() * part / parts, {}, &Band::visited) -
+              bands_.begin());
   }
 
-  std::vector<Interval> intervals_;
-  std::array<Index, RowBands::kMax + 1> limits_{};  ///< the first cell of each band
-  std::array<Index, RowBands::kMax + 1> begin_{};   ///< the first interval of each band
-  std::array<Index, RowBands::kMax + 1> before_{};  ///< cells of this process visited before each
-  Index row_ = 0;                                   ///< cells of a row; 0: there are no rows
-  Ranks ranks_;
   Index size_ = 0;
+  Index row_ = 0;  ///< intervals end at the multiples of this length in a band
+  Ranks ranks_;    ///< that share the bands
+  Index band_count_ = 1;
+  IndexRange own_bands_{0, 1};
+  std::array<Band, kMaxBands + 1> bands_{};
+  std::vector<IndexRange> intervals_;
   Index count_ = 0;
-  Index visited_ = 0;  ///< by this process
-  Index place_ = 0;    ///< of the first of these among those of all processes
+  Index place_ = 0;  ///< cells of the set that lower ranks visit
   bool is_ragged_ = false;
-  bool packed_ = false;  ///< cells of fields without rows, in the bands of others
-  Index bands_ = 1;
-  Share own_{0, 0};
-  Share own_bands_{0, 1};
 };
 
-/// A field of any number of components: zero in this process's rows.
+/// Zeroes a field of any number of components in this rank's rows.
 template <typename Field>
 void clear(const Sweep& cells, Field& field) {
   cells.each_own([&](Index first, Index last) {
@@ -187,25 +176,19 @@ void clear(const Sweep& cells, Field& field) {
 }
 
 template <typename Contains>
-void Sweep::assign(Index cells, const Contains& contains) {
-  if (!packed_) set_bands(cells);
-  // Sums over long intervals would round by more.
-  const Index row = packed_ ? kCellsOfBand : row_ > 0 ? row_ : cells;
+void Sweep::assign(const Contains& contains) {
   intervals_.clear();
-  visited_ = 0;
-  begin_.fill(0);
-  before_.fill(0);
-  for (Index band = own_bands_.first; band < own_bands_.last; ++band) {
-    begin_[at(band)] = static_cast<Index>(intervals_.size());
-    before_[at(band)] = visited_;
+  Index visited = 0;
+  for (Index band = 0; band <= kMaxBands; ++band) {
+    bands_[at(band)].interval = static_cast<Index>(intervals_.size());
+    bands_[at(band)].visited = visited;
+    if (band < own_bands_.first || band >= own_bands_.last) continue;
     bool inside = false;
-    const Index first = limits_[at(band)];
-    const Index end = limits_[at(band + 1)];
-    Index row_end = first + row;
-    for (Index cell = first; cell < end; ++cell) {
-      if (cell == row_end) {
+    Index row_end = bands_[at(band)].cell + row_;
+    for (Index cell = bands_[at(band)].cell; cell < bands_[at(band) + 1].cell; ++cell) {
+      if (cell == row_end) {  // sums over longer intervals would round more
         inside = false;
-        row_end += row;
+        row_end += row_;
       }
       if (!contains(cell)) {
         inside = false;
@@ -214,18 +197,14 @@ void Sweep::assign(Index cells, const Contains& contains) {
       if (!inside) intervals_.push_back({cell, cell});
       inside = true;
       intervals_.back().last = cell + 1;
-      ++visited_;
+      ++visited;
     }
   }
-  for (Index band = own_bands_.last; band <= RowBands::kMax; ++band) {
-    begin_[at(band)] = static_cast<Index>(intervals_.size());
-    before_[at(band)] = visited_;
-  }
-  count_ = visited_;
+  count_ = visited;
   place_ = 0;
   auto intervals = static_cast<double>(intervals_.size());
-  if (shared()) {
-    const std::vector<double> of_each = ranks_.of_each(static_cast<double>(visited_));
+  if (ranks_.several()) {
+    const std::vector<double> of_each = ranks_.of_each(static_cast<double>(visited));
     const auto sum_to = [&](int rank) {
       return static_cast<Index>(std::accumulate(of_each.begin(), of_each.begin() + rank, 0.0));
     };
@@ -238,24 +217,19 @@ void Sweep::assign(Index cells, const Contains& contains) {
   is_ragged_ = intervals > kIntervalsOfSmooth * std::sqrt(static_cast<double>(count_));
 }
 
-inline void Sweep::set_bands(Index cells) {
-  size_ = cells;
-  const RowBands bands = row_ > 0 ? RowBands(size_ / row_, ranks_) : RowBands(size_, {}, kCellsOfBand);
-  const Index of_row = std::max<Index>(row_, 1);
-  bands_ = std::max<Index>(bands.count(), 1);
-  own_bands_ = shared() ? bands.own() : Share{0, bands_};
-  for (Index band = 0; band <= bands_; ++band)
-    limits_[at(band)] = std::min(bands.rows(band).first * of_row, cells);
-  own_ = {limits_[at(own_bands_.first)], limits_[at(own_bands_.last)]};
+inline void Sweep::set_bands(Index cells_of_band) {
+  band_count_ = std::max<Index>((size_ + cells_of_band - 1) / cells_of_band, 1);
+  own_bands_ = ranks_.own_share(band_count_);
+  for (Index band = 0; band <= band_count_; ++band)
+    bands_[at(band)].cell = std::min(band * cells_of_band, size_);
 }
 
 inline Sweep Sweep::packed() const {
   Sweep packed(*this);
-  packed.packed_ = true;
   packed.size_ = count_;
-  packed.own_ = {place_, place_ + visited_};
-  for (std::size_t band = 0; band < limits_.size(); ++band) packed.limits_[band] = place_ + before_[band];
-  packed.assign(count_, [](Index) { return true; });
+  packed.row_ = kCellsOfBand;
+  for (Band& band : packed.bands_) band.cell = place_ + band.visited;
+  packed.assign([](Index) { return true; });
   packed.is_ragged_ = is_ragged_;
   return packed;
 }

@@ -139,7 +139,7 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
 /// Each process has what is kept of its own rows, after that of the processes before it.
 void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                 const ArrayXd& keep) {
-  const Share rows = own_rows(grid);
+  const IndexRange rows = own_rows(grid);
   const Index first = rows.first * grid.n2;
   const auto own = static_cast<double>((keep.segment(first, rows.count() * grid.n2) != 0.0).count());
   const std::vector<double> kept = grid.ranks.of_each(own);

@@ -16,7 +16,7 @@ constexpr double kFar = 1.0 / 16.0;
 constexpr double kFade = 1.0;
 /// Ranks' rows end with those of blocks of blocks.
 constexpr Index kCoarsest = kSide * kSide;
-static_assert(RowBands::kRows % kCoarsest == 0);
+static_assert(kRowsOfBand % kCoarsest == 0);
 /// On shorter grids hardly a cell is out of reach: all are mixed, which costs less than to find which are.
 constexpr Index kAllMixed = 4 * kCoarsest;
 
@@ -74,7 +74,7 @@ void Extension::fill_blocks(const double* in, Index component) {
   Level& fine = blocks_[0];
   Level& coarse = blocks_[1];
   double* const sums = fine.sums.data() + component * fine.n1 * fine.n2;
-  const Index of_rank = RowBands(grid_.n1, grid_.ranks).rows_of_rank() / kSide;
+  const Index of_rank = rows_of_rank(grid_.n1, grid_.ranks) / kSide;
   std::fill_n(sums, fine.n1 * fine.n2, 0.0);
   mixed_.each([&](Index first, Index last) {
     const Index row = first / grid_.n2;
@@ -111,7 +111,7 @@ void Extension::spread_blocks(Index component) {
     }
   };
   for (Index row = 0; row < blocks_[1].n1; ++row) spread_row(blocks_[1], nullptr, row);
-  const Share own = own_rows(grid_);
+  const IndexRange own = own_rows(grid_);
   const Index first_block = own.first / kSide;
   in_parts(ThreadPool::available(), blocks_of(own.last) - first_block, [&](int, Index first, Index last) {
     for (Index row = first; row < last; ++row) spread_row(blocks_[0], &blocks_[1], first_block + row);
@@ -159,7 +159,7 @@ void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
   };
   const Eigen::ArrayXXd from = reached(1.0, 0.0);
   const Eigen::ArrayXXd to = reached(free_is_whole ? 0.0 : 1.0, 1.0);
-  mixed_.assign(grid_.cells(), [&](Index cell) {
+  mixed_.assign([&](Index cell) {
     const Index row = cell / grid_.n2 / kCoarsest;
     const Index column = cell % grid_.n2 / kCoarsest;
     return from(column, row) > 0.0 && to(column, row) > 0.0;

@@ -47,7 +47,7 @@ struct TangentSpace {
   }
 
   /// On so many cells, none of which may carry any.
-  TangentSpace(Index components, Index cells) : TangentSpace(components, Sweep(Field::Zero(cells))) {}
+  TangentSpace(Index components, Index cells) : TangentSpace(components, Sweep(cells)) {}
 
   Index components() const { return f2.size() > 0 ? 2 : 1; }
 
@@ -80,8 +80,7 @@ struct TangentSpace {
   /// Finds the cells where something is free, after these were set.
   void find_free() {
     const bool vectors = components() == 2;
-    free.assign(f1.size(),
-                [&](Index i) { return f1[i] != 0.0 || (vectors && (f2[i] != 0.0 || !on_line(i))); });
+    free.assign([&](Index i) { return f1[i] != 0.0 || (vectors && (f2[i] != 0.0 || !on_line(i))); });
   }
 
   /// v: what of it may move, in some cells.
