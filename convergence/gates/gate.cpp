@@ -28,62 +28,68 @@ const Json* stated_reference_error(const Json& object) {
   return stated == exact->end() ? nullptr : &*stated;
 }
 
-/// By how much a value may be off before the verdict changes; NaN where it asks for no such thing.
-double tolerance(const Gate& gate) {
-  if (!gate.below) return kNaN;
-  return gate.above ? 0.5 * (*gate.below - *gate.above) : *gate.below;
+/// The interval of a bound that needs no other result.
+std::optional<Interval> own_interval(const Bound& bound) {
+  if (const auto* below = std::get_if<Below>(&bound)) return Interval{-below->size, below->size};
+  if (const auto* above = std::get_if<Above>(&bound)) return Interval{.low = above->low};
+  if (const auto* between = std::get_if<Between>(&bound)) return Interval{between->low, between->high};
+  return {};
 }
 
-/// Factor of the bound that a number reaches.
-double factor_of(const Gate& gate, const Json& value) {
-  if (!gate.equals.is_null()) return value == gate.equals ? 0.0 : kInfinity;
-  if (!value.is_number()) return kInfinity;
+double half_width(const Interval& interval) { return 0.5 * (interval.high - interval.low); }
+
+/// Distance of a value from the middle over half the width; 0 or infinite where the bound has no middle.
+double factor_of(const Judgement& judgement) {
+  const Json& value = judgement.value;
+  if (const auto* equals = std::get_if<Equals>(&judgement.gate.bound))
+    return value == equals->value ? 0.0 : kInfinity;
+  if (!value.is_number() || !judgement.interval) return kInfinity;
   const double number = value.get<double>();
-  if (gate.below && gate.above) {
-    return std::abs(number - 0.5 * (*gate.below + *gate.above)) / tolerance(gate);
-  }
-  if (gate.below) return std::abs(number) / *gate.below;
-  if (number > 0.0 && *gate.above > 0.0) return *gate.above / number;
-  return number > *gate.above ? 0.0 : kInfinity;
+  const auto [low, high] = *judgement.interval;
+  if (std::isfinite(high)) return std::abs(number - 0.5 * (high + low)) / half_width(*judgement.interval);
+  if (number > 0.0 && low > 0.0) return low / number;
+  return number > low ? 0.0 : kInfinity;
 }
 
-bool holds(const Gate& gate, const Json& value) {
-  if (!gate.equals.is_null()) return value == gate.equals;
-  if (!value.is_number()) return false;
+bool holds(const Judgement& judgement) {
+  const Json& value = judgement.value;
+  if (const auto* equals = std::get_if<Equals>(&judgement.gate.bound)) return value == equals->value;
+  if (!value.is_number() || !judgement.interval) return false;
   const double number = value.get<double>();
-  if (gate.above && !(number > *gate.above)) return false;
-  return !gate.below || (gate.above ? number : std::abs(number)) < *gate.below;
+  return number > judgement.interval->low && number < judgement.interval->high;
 }
 
-/// Why a gate is tighter than what it is judged by allows; empty where it is not.
-std::string too_tight(const Gate& gate, const Json& result) {
-  if (!gate.below || gate.published) return "";
+/// Why a gate is narrower than the errors allow; empty where it is wide enough.
+std::string too_tight(const Judgement& judgement, const Json& result) {
+  const Gate& gate = judgement.gate;
+  const bool is_bounded = judgement.interval && std::isfinite(judgement.interval->high);
+  if (!is_bounded || std::holds_alternative<Published>(gate.bound)) return "";
   double reference = reference_error(result, gate.quantity);
-  if (std::isnan(reference) && gate.kind == GateSource::result) reference = 0.0;
+  if (std::isnan(reference) && std::holds_alternative<ResultSource>(gate.source)) reference = 0.0;
   if (std::isnan(reference)) {
-    return "the result does not say how uncertain the exact answer is, so nothing says whether the gate is "
-           "wide enough";
+    return "the result does not state the uncertainty of the exact answer, so the gate may be narrower than "
+           "it";
   }
   const double needed = kGateMargin * (reference + gate.platform_spread);
-  if (tolerance(gate) >= needed) return "";
+  const double tolerance = half_width(*judgement.interval);
+  if (tolerance >= needed) return "";
   return fmt::format(
-      "tighter than its reference allows: it leaves {:.3g}, and {:.3g} is needed, {:g} times the "
-      "reference error {:.2g} and the platform spread {:.2g} together",
-      tolerance(gate), needed, kGateMargin, reference, gate.platform_spread);
+      "narrower than its reference allows: the half width is {:.3g} and must be at least {:.3g}, {:g} times "
+      "the sum of reference error {:.2g} and platform spread {:.2g}",
+      tolerance, needed, kGateMargin, reference, gate.platform_spread);
 }
 
 std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
 
 std::string word(const Json& result, const char* key) {
-  return result.is_object() && result.contains(key) && result[key].is_string()
-             ? result[key].get<std::string>()
-             : "";
+  const auto found = result.is_object() ? result.find(key) : result.end();
+  return found != result.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-/// The work that made a result.
-std::string maker(GateSource kind) {
-  if (kind == GateSource::scene) return "solve";
-  return kind == GateSource::study ? "study" : "run";
+/// The noun for the work that made a result.
+std::string maker(const GateSource& source) {
+  if (std::holds_alternative<SceneSource>(source)) return "solve";
+  return std::holds_alternative<StudySource>(source) ? "study" : "run";
 }
 
 bool is_value(const FoundQuantity& found) {
@@ -93,51 +99,75 @@ bool is_value(const FoundQuantity& found) {
 /// Whether the result knows no such name, not even as one without a value.
 bool is_unknown(const FoundQuantity& found) { return found.value == nullptr && found.reason.empty(); }
 
-/// Why there is no number: what the result says, or which name comes nearest.
+/// Why there is no number: the reason that the result gives, or the nearest name that it has.
 std::string missing_text(const Gate& gate, const Json& result, const FoundQuantity& found) {
   if (!is_unknown(found)) return fmt::format("{} is not a number{}", gate.quantity, because(found.reason));
   if (const std::string status = word(result, "status"); status == "failed" || status == "refused") {
-    return fmt::format("there is no {}: the {} {}{}", gate.quantity, maker(gate.kind),
+    return fmt::format("there is no {}: the {} {}{}", gate.quantity, maker(gate.source),
                        status == "failed" ? "failed" : "was refused", because(word(result, "message")));
   }
   return fmt::format("the result has no {}; the nearest is {}", gate.quantity,
                      solver::nearest_word(gate.quantity, quantity_paths(result)));
 }
 
-std::string out_of_bounds_text(const Gate& gate, const Json& value) {
-  const double factor = factor_of(gate, value);
-  const bool has_factor = gate.equals.is_null() && !gate.above && std::isfinite(factor);
-  return fmt::format("{} is {}, must be {}{}", gate.quantity,
-                     value.is_number() ? number_text(value) : value.dump(), bound_text(gate),
-                     has_factor ? fmt::format(": {:.3g} times the bound", factor) : "");
+std::string out_of_bounds_text(const Judgement& judgement) {
+  const Json& value = judgement.value;
+  const bool has_factor =
+      std::holds_alternative<Below>(judgement.gate.bound) && std::isfinite(judgement.factor);
+  return fmt::format("{} is {}, must be {}{}", judgement.gate.quantity,
+                     value.is_number() ? number_text(value) : value.dump(), bound_text(judgement),
+                     has_factor ? fmt::format(": {:.3g} times the bound", judgement.factor) : "");
 }
 
-/// Why runs are missing that the value rests on, the one of a solve or some of a study's; empty: none is. It
-/// says nothing of what the gate asks for, so that nothing else is judged.
+/// Why the solve, or runs of the study, have no result; empty where all have one.
 std::string died(const Gate& gate, const Json& result) {
-  if (gate.kind != GateSource::result && word(result, "status") == "failed") {
-    return fmt::format("the {} failed{}", maker(gate.kind), because(word(result, "message")));
+  if (!std::holds_alternative<ResultSource>(gate.source) && word(result, "status") == "failed") {
+    return fmt::format("the {} failed{}", maker(gate.source), because(word(result, "message")));
   }
   return result.is_object() ? failed_runs_text(result) : "";
 }
 
-/// The reason against a number of a solve that did not reach its tolerance; empty where it did.
+/// The message of a solve that did not reach its tolerance; empty where it did.
 std::string unfinished(const Gate& gate, const Json& result) {
   if (gate.quantity == "status" || word(result, "status") != "not_converged") return "";
   return "the solve did not reach its tolerance" + because(word(result, "message"));
-}
-
-/// Why a gate does not hold; empty where it does.
-std::string fault(const Gate& gate, const Json& result, const FoundQuantity& found) {
-  if (!is_value(found)) return missing_text(gate, result, found);
-  if (!holds(gate, *found.value)) return out_of_bounds_text(gate, *found.value);
-  return unfinished(gate, result);
 }
 
 Outcome outcome_of(GateStatus status, bool held) {
   if (status == GateStatus::report_only) return Outcome::reported;
   if (status == GateStatus::active) return held ? Outcome::passed : Outcome::failed;
   return held ? Outcome::passed_unexpectedly : Outcome::failed_as_expected;
+}
+
+Judgement judge_by(Judgement judgement, const Json& result) {
+  const Gate& gate = judgement.gate;
+  const FoundQuantity found = find_quantity(result, gate.quantity);
+  if (is_value(found)) judgement.value = *found.value;
+  judgement.why = died(gate, result);
+  if (!judgement.why.empty()) {
+    judgement.outcome = Outcome::failed;
+    return judgement;
+  }
+  judgement.factor = factor_of(judgement);
+  if (is_value(found)) judgement.why = too_tight(judgement, result);
+  if (!judgement.why.empty()) return judgement;
+  if (!is_value(found)) {
+    judgement.why = missing_text(gate, result, found);
+  } else {
+    judgement.why = holds(judgement) ? unfinished(gate, result) : out_of_bounds_text(judgement);
+  }
+  judgement.outcome = outcome_of(gate.status, judgement.why.empty());
+  const bool is_published = std::holds_alternative<Published>(gate.bound);
+  if (judgement.outcome == Outcome::passed_unexpectedly) {
+    judgement.why = is_published ? "agrees with the published number: remove `differs`"
+                                 : "expected to fail, and holds: remove the gate, or make it active";
+  }
+  const bool no_number =
+      is_published && (!std::isfinite(judgement.factor) || !unfinished(gate, result).empty());
+  if (judgement.outcome == Outcome::failed_as_expected && (is_unknown(found) || no_number)) {
+    judgement.outcome = Outcome::failed;  // a misspelt quantity is not the expected failure
+  }
+  return judgement;
 }
 
 }  // namespace
@@ -160,52 +190,32 @@ double reference_error(const Json& result, const std::string& quantity) {
   return kNaN;
 }
 
-Judgement judge(const Gate& gate, const Json& result) {
-  Judgement judgement = refuse(gate, died(gate, result));
-  const FoundQuantity found = find_quantity(result, gate.quantity);
-  if (!judgement.why.empty()) {
-    if (is_value(found)) judgement.value = *found.value;
-    judgement.outcome = Outcome::failed;
-    return judgement;
-  }
-  if (is_value(found)) {
-    judgement.value = *found.value;
-    judgement.factor = factor_of(gate, judgement.value);
-    judgement.why = too_tight(gate, result);
-    if (!judgement.why.empty()) return judgement;
-  }
-  judgement.why = fault(gate, result, found);
-  const bool held = judgement.why.empty();
-  judgement.outcome = outcome_of(gate.status, held);
-  if (judgement.outcome == Outcome::passed_unexpectedly) {
-    judgement.why = gate.published ? "agrees with the published number: remove differs"
-                                   : "expected to fail, and holds: remove the entry, or make it active";
-  }
-  const bool no_number =
-      gate.published && (!std::isfinite(judgement.factor) || !unfinished(gate, result).empty());
-  if (judgement.outcome == Outcome::failed_as_expected && (is_unknown(found) || no_number)) {
-    judgement.outcome = Outcome::failed;  // a misspelt quantity is not the failure that was expected
-  }
-  return judgement;
+Judgement judge(const Gate& gate, const Json& result) { return judge_by(refuse(gate, ""), result); }
+
+Judgement judge_within(const Gate& gate, const Interval& interval, const Json& result) {
+  Judgement judgement = refuse(gate, "");
+  judgement.interval = interval;
+  return judge_by(std::move(judgement), result);
 }
 
-Gate bounded_by(Gate gate, const Json& other) {
+Judgement judge_relative(const Gate& gate, const Json& result, const Json& other) {
+  const auto& [file, within] = std::get<RelativeTo>(gate.bound);
   const FoundQuantity found = find_quantity(other, gate.quantity);
   std::string why = died(gate, other);
   if (why.empty()) why = is_value(found) ? unfinished(gate, other) : missing_text(gate, other, found);
   if (why.empty() && !(found.value->is_number() && std::abs(found.value->get<double>()) > 0.0)) {
     why = fmt::format("{} is {}", gate.quantity, found.value->dump());
   }
-  if (!why.empty()) throw solver::InputError(gate.of.string(), why + "; allowed: a number that is not zero");
+  if (!why.empty()) throw solver::InputError(file.string(), why + "; allowed: a number that is not zero");
   const double number = found.value->get<double>();
-  gate.below = number + gate.within * std::abs(number);
-  gate.above = number - gate.within * std::abs(number);
-  return gate;
+  const double allowed = within * std::abs(number);
+  return judge_within(gate, {number - allowed, number + allowed}, result);
 }
 
 Judgement refuse(const Gate& gate, const std::string& why) {
   Judgement judgement;
   judgement.gate = gate;
+  judgement.interval = own_interval(gate.bound);
   judgement.factor = kInfinity;
   judgement.why = why;
   return judgement;
@@ -219,26 +229,46 @@ int exit_code(const std::vector<Judgement>& judgements) {
   return any(Outcome::failed) || any(Outcome::passed_unexpectedly) ? 1 : 0;
 }
 
-std::string bound_text(const Gate& gate) {
-  if (gate.published)
-    return fmt::format("the published {} ({})", gate.published->text, gate.published->source);
-  if (!gate.of.empty()) {
-    const std::string other =
-        gate.below ? fmt::format("{:.7g}, that", 0.5 * (*gate.below + *gate.above)) : "that";
-    return fmt::format("within {:g} of {} of {}", gate.within, other, gate.of.filename().string());
-  }
-  if (gate.equals.is_number()) return fmt::format("equal to {}", gate.equals.get<double>());
-  if (!gate.equals.is_null()) return "equal to " + gate.equals.dump();
-  if (gate.below && gate.above) return fmt::format("between {} and {}", *gate.above, *gate.below);
-  if (gate.below) return fmt::format("below {} in size", *gate.below);
-  return fmt::format("above {}", *gate.above);
+std::string bound_text(const Judgement& judgement) {
+  struct Text {
+    const std::optional<Interval>& known;
+    std::string operator()(const Below& below) const { return fmt::format("below {} in size", below.size); }
+    std::string operator()(const Above& above) const { return fmt::format("above {}", above.low); }
+    std::string operator()(const Between& between) const {
+      return fmt::format("between {} and {}", between.low, between.high);
+    }
+    std::string operator()(const Equals& equals) const {
+      return "equal to " +
+             (equals.value.is_number() ? fmt::format("{}", equals.value.get<double>()) : equals.value.dump());
+    }
+    std::string operator()(const RelativeTo& relative) const {
+      const std::string other =
+          known ? fmt::format("{:.7g}, the value", 0.5 * (known->high + known->low)) : "the value";
+      return fmt::format("within {:g} of {} of {}", relative.within, other,
+                         relative.file.filename().string());
+    }
+    std::string operator()(const Published& published) const {
+      return fmt::format("the published {} ({})", published.number.text, published.source);
+    }
+  };
+  return std::visit(Text{judgement.interval}, judgement.gate.bound);
 }
 
 std::string rerun_command(const Gate& gate) {
-  return fmt::format(
-      "slipstick gate {}{} --only {}", shell_word(gate.file.string()),
-      gate.results_folder.empty() ? "" : " --results " + shell_word(gate.results_folder.string()),
-      shell_word(gate.id));
+  const auto* const result = std::get_if<ResultSource>(&gate.source);
+  const bool elsewhere = result != nullptr && !result->folder.empty();
+  return fmt::format("slipstick gate {}{} --only {}", shell_word(gate.file.string()),
+                     elsewhere ? " --results " + shell_word(result->folder.string()) : "",
+                     shell_word(gate.id));
+}
+
+std::filesystem::path file_of(const GateSource& source) {
+  return std::visit(
+      [](const auto& each) -> std::filesystem::path {
+        if constexpr (requires { each.file; }) return each.file;
+        return {};
+      },
+      source);
 }
 
 }  // namespace slipstick::convergence

@@ -3,8 +3,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
+#include <variant>
 
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate_run.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
@@ -24,24 +29,36 @@ struct GateRequest {
   RunOptions runs{.output = "build/gates"};
 };
 
-/// A gate whose source cannot be read says so when it is judged.
+/// The files that the gates read; a source that cannot be read is refused when its gate is judged.
 std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) {
   std::vector<std::filesystem::path> files;
-  for (const Gate& gate : with_others(gates)) {
-    if (gate.kind == GateSource::none) continue;
-    files.push_back(gate.source);
-    if (gate.kind == GateSource::result) continue;
+  const auto add_scene = [&](const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+    std::ranges::move(input_files(solver::read_scene(scene, overrides)), std::back_inserter(files));
+  };
+  for (const GateSource& source : sources_of(gates)) {
+    if (const auto file = file_of(source); !file.empty()) files.push_back(file);
     try {
-      Study study;
-      study.scene = gate.source;
-      study.overrides = gate.overrides;
-      if (gate.kind == GateSource::study) study = read_study(gate.source, gate.overrides);
-      const auto of_scene = input_files(solver::read_scene(study.scene, study.overrides));
-      files.insert(files.end(), of_scene.begin(), of_scene.end());
+      if (const auto* const scene = std::get_if<SceneSource>(&source))
+        add_scene(scene->file, scene->overrides);
+      if (const auto* const of_study = std::get_if<StudySource>(&source)) {
+        const Study study = read_study(of_study->file, of_study->overrides);
+        add_scene(study.scene, study.overrides);
+      }
     } catch (const solver::InputError&) {
     }
   }
   return files;
+}
+
+/// The gates with further overrides of their scenes.
+std::vector<Gate> with_overrides(std::vector<Gate> gates, const std::vector<std::string>& further) {
+  for (Gate& gate : gates) {
+    std::vector<std::string>* overrides = nullptr;
+    if (auto* const scene = std::get_if<SceneSource>(&gate.source)) overrides = &scene->overrides;
+    if (auto* const study = std::get_if<StudySource>(&gate.source)) overrides = &study->overrides;
+    if (overrides != nullptr) overrides->insert(overrides->end(), further.begin(), further.end());
+  }
+  return gates;
 }
 
 int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
@@ -53,11 +70,8 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
   const ProcessPool pool = request.runs.pool();
-  std::vector<Gate> gates = select_gates(files.gates, request.only);
-  for (Gate& gate : gates) {
-    const std::vector<std::string>& set = request.runs.overrides;
-    if (gate.kind != GateSource::result) gate.overrides.insert(gate.overrides.end(), set.begin(), set.end());
-  }
+  const std::vector<Gate> gates =
+      with_overrides(select_gates(files.gates, request.only), request.runs.overrides);
   if (shard) {
     result = run_shard(gate_runs(gates, pool), *shard, pool);
     text << shard_text(result);
@@ -89,11 +103,11 @@ RunCommand add_gate_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
   command->add_option("files", request->files, "gate files (TOML)")->required();
-  command->add_option("--only", request->only, "run the gates with these ids alone; stands after the files");
+  command->add_option("--only", request->only, "run only the gates with these ids; comes after the files");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
   command->add_option("--results", request->results,
-                      "folder of the result files that gates name, in place of the gate file's own");
+                      "folder of the result files that gates name (default: the gate file's folder)");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
   request->runs.add_shards_to(*command, {"--junit", "--summary"});

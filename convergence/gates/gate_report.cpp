@@ -1,4 +1,4 @@
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_report.hpp"
 
 #include <fmt/ranges.h>
 
@@ -8,7 +8,9 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <variant>
 
+#include "convergence/gates/published.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/verdict_files.hpp"
 #include "solver/input/input_file.hpp"
@@ -45,10 +47,10 @@ long count(const std::vector<Judgement>& judgements, Outcome outcome) {
   return std::ranges::count(judgements, outcome, &Judgement::outcome);
 }
 
-/// In the words for published numbers, where it is one.
+/// The outcome, or how a published number compares.
 std::string outcome_text(const Judgement& judgement) {
-  const std::string published = published_outcome(judgement);
-  return published.empty() ? to_string(judgement.outcome) : published;
+  const std::optional<Comparison> comparison = comparison_of(judgement);
+  return comparison ? to_string(*comparison) : to_string(judgement.outcome);
 }
 
 std::string counts_of(const std::vector<Judgement>& judgements) {
@@ -59,19 +61,21 @@ std::string counts_of(const std::vector<Judgement>& judgements) {
   return counts_text("gate", counts);
 }
 
-/// A line where numbers of the literature are among them.
+/// One line on the published numbers; empty where there are none.
 std::string published_counts(const std::vector<Judgement>& judgements) {
-  std::map<std::string, int> counts;
+  std::map<std::optional<Comparison>, int> counts;
   std::set<std::string> sources;
   for (const Judgement& judgement : judgements) {
-    ++counts[published_outcome(judgement)];
-    if (judgement.gate.published) sources.insert(judgement.gate.published->source);
+    ++counts[comparison_of(judgement)];
+    if (const auto* const published = std::get_if<Published>(&judgement.gate.bound))
+      sources.insert(published->source);
   }
   if (sources.empty()) return "";
   return fmt::format(
       "published numbers of {} tables or equations: {} agree, {} differ for a known reason, {} cannot be "
       "compared at their digits, {} not compared\n",
-      sources.size(), counts["agrees"], counts["differs"], counts["undecided"], counts["not compared"]);
+      sources.size(), counts[Comparison::agrees], counts[Comparison::differs], counts[Comparison::undecided],
+      counts[Comparison::not_compared]);
 }
 
 std::string value_text(const Json& value) {
@@ -79,35 +83,33 @@ std::string value_text(const Json& value) {
   return value.is_null() ? "-" : value.dump();
 }
 
-/// In the unit of the publication, where it is compared with one.
+/// The value; for a published number in the unit of the publication, with its error.
 std::string value_text(const Judgement& judgement) {
-  if (!judgement.gate.published) return value_text(judgement.value);
-  const Json published = published_json(judgement);
-  if (!published.contains("ours")) return "-";
-  return fmt::format("{:.8g} (own error {:.2g} half units)", published["ours"].get<double>(),
-                     published["own_error_half_units"].get<double>());
+  if (!std::holds_alternative<Published>(judgement.gate.bound)) return value_text(judgement.value);
+  const std::optional<OwnNumber> ours = own_number(judgement);
+  return ours ? fmt::format("{:.8g} (own error {:.2g} half units)", ours->value, ours->half_units) : "-";
 }
 
-/// Whether the gate was read; a file that could not be has no quantity.
+/// False for a gate file that could not be read.
 bool was_read(const Judgement& judgement) { return !judgement.gate.quantity.empty(); }
 
 std::string factor_text(const Judgement& judgement) {
-  return std::isfinite(judgement.factor) && judgement.gate.equals.is_null()
+  return std::isfinite(judgement.factor) && !std::holds_alternative<Equals>(judgement.gate.bound)
              ? fmt::format("{:.2g}", judgement.factor)
              : "-";
 }
 
-/// All there is to know of a gate that does not pass, a line each.
+/// The details of a gate that does not pass, one in each line.
 std::vector<std::string> explanation(const Judgement& judgement) {
   const Gate& gate = judgement.gate;
   std::vector<std::string> lines{judgement.why};
   const auto add = [&](const char* label, const std::string& text) {
     if (!text.empty()) lines.push_back(fmt::format("{}: {}", label, text));
   };
-  add("likely to blame", judgement.dominant_error);
+  add("largest part of the error", judgement.dominant_error);
   add("why it matters", gate.reason);
-  add("where the bound comes from", gate.basis);
-  if (was_read(judgement)) add("again, alone", rerun_command(gate));
+  add("origin of the bound", gate.basis);
+  if (was_read(judgement)) add("to repeat this gate", rerun_command(gate));
   return lines;
 }
 
@@ -120,7 +122,7 @@ JunitCase junit_case(const Judgement& judgement) {
                   .message = judgement.why};
   if (was_read(judgement)) {
     junit.shown = fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement),
-                              bound_text(judgement.gate));
+                              bound_text(judgement));
   }
   if (is_skipped(judgement.outcome)) {
     junit.verdict = CaseVerdict::skipped;
@@ -139,8 +141,20 @@ std::string markdown_row(const Judgement& judgement) {
   return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", outcome_text(judgement),
                      markdown_text(judgement.gate.id), markdown_text(judgement.gate.quantity),
                      markdown_text(value_text(judgement)),
-                     was_read(judgement) ? markdown_text(bound_text(judgement.gate)) : "-",
-                     factor_text(judgement), markdown_text(remarks));
+                     was_read(judgement) ? markdown_text(bound_text(judgement)) : "-", factor_text(judgement),
+                     markdown_text(remarks));
+}
+
+/// The bound as keys of a gate's row: below, above, equals, of and within.
+Json bound_json(const Judgement& judgement) {
+  const Bound& bound = judgement.gate.bound;
+  if (const auto* const equals = std::get_if<Equals>(&bound)) return {{"equals", equals->value}};
+  Json json = Json::object();
+  if (!judgement.interval) return json;
+  const auto [low, high] = *judgement.interval;
+  if (std::isfinite(high)) json.emplace("below", high);
+  if (std::isfinite(low) && !std::holds_alternative<Below>(bound)) json.emplace("above", low);
+  return json;
 }
 
 Json judgement_json(const Judgement& judgement) {
@@ -150,25 +164,18 @@ Json judgement_json(const Judgement& judgement) {
             {"line", gate.line},
             {"outcome", to_string(judgement.outcome)}};
   if (was_read(judgement)) {
-    json["quantity"] = gate.quantity;
-    json["value"] = judgement.value;
-    if (judgement.value.is_null()) json["value_reason"] = judgement.why;
-    if (!gate.of.empty()) {
-      json["of"] = gate.of.string();
-      json["within"] = gate.within;
-    }
-    if (!judgement.file_date.empty()) json["file_date"] = judgement.file_date;
-    if (gate.below) json["below"] = *gate.below;
-    if (gate.above) json["above"] = *gate.above;
-    if (!gate.equals.is_null()) json["equals"] = gate.equals;
-    set_number(json, "factor", judgement.factor, "no number says how far it is from the bound");
-    if (gate.published) json["published"] = published_json(judgement);
-    json["basis"] = gate.basis;
-    json["reason"] = gate.reason;
-    json["rerun"] = rerun_command(gate);
+    json.update(Json{{"quantity", gate.quantity}, {"value", judgement.value}});
+    if (judgement.value.is_null()) json.emplace("value_reason", judgement.why);
+    if (const auto* const relative = std::get_if<RelativeTo>(&gate.bound))
+      json.update(Json{{"of", relative->file.string()}, {"within", relative->within}});
+    if (!judgement.file_date.empty()) json.emplace("file_date", judgement.file_date);
+    json.update(bound_json(judgement));
+    set_number(json, "factor", judgement.factor, "there is no number to compare with the bound");
+    if (std::holds_alternative<Published>(gate.bound)) json.emplace("published", published_json(judgement));
+    json.update(Json{{"basis", gate.basis}, {"reason", gate.reason}, {"rerun", rerun_command(gate)}});
   }
-  json["why"] = judgement.why;
-  if (!judgement.dominant_error.empty()) json["blame"] = judgement.dominant_error;
+  json.emplace("why", judgement.why);
+  if (!judgement.dominant_error.empty()) json.emplace("blame", judgement.dominant_error);
   return json;
 }
 
@@ -182,16 +189,16 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
   std::map<std::string, std::string> dates;
   for (const Judgement& judgement : judgements) {
     const Gate& gate = judgement.gate;
-    if (!judgement.file_date.empty()) dates[gate.source.string()] = judgement.file_date;
+    if (!judgement.file_date.empty()) dates[file_of(gate.source).string()] = judgement.file_date;
     if (was_read(judgement)) {
       text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", outcome_text(judgement), gate.id, width,
-                          gate.quantity, value_text(judgement), bound_text(gate));
+                          gate.quantity, value_text(judgement), bound_text(judgement));
     }
     if (!is_wrong(judgement.outcome)) continue;
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
     for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
   }
-  for (const auto& [file, date] : dates) text += fmt::format("  {} is of {}\n", file, date);
+  for (const auto& [file, date] : dates) text += fmt::format("  {} was changed on {}\n", file, date);
   return text + details + published_counts(judgements) + counts_of(judgements) + "\n";
 }
 
@@ -211,13 +218,11 @@ std::string gates_markdown(const std::vector<Judgement>& judgements) {
 }
 
 Json gates_json(const std::vector<Judgement>& judgements) {
-  Json json;
-  json["exit_code"] = exit_code(judgements);
-  json["counts"] = Json::object();
-  for (const Outcome outcome : kSeverity) json["counts"][to_string(outcome)] = count(judgements, outcome);
-  json["gates"] = Json::array();
-  for (const Judgement& judgement : judgements) json["gates"].push_back(judgement_json(judgement));
-  return json;
+  Json counts = Json::object();
+  for (const Outcome outcome : kSeverity) counts.emplace(to_string(outcome), count(judgements, outcome));
+  Json rows = Json::array();
+  for (const Judgement& judgement : judgements) rows.push_back(judgement_json(judgement));
+  return {{"exit_code", exit_code(judgements)}, {"counts", counts}, {"gates", rows}};
 }
 
 }  // namespace slipstick::convergence

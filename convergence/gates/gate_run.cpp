@@ -1,4 +1,4 @@
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_run.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -9,10 +9,11 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <variant>
 
+#include "convergence/gates/published.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/quantity.hpp"
-#include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
@@ -23,58 +24,62 @@ namespace {
 using solver::InputError;
 namespace fs = std::filesystem;
 
-/// The result that a gate judges, or why there is none.
-struct Source {
+/// The result of a source, or why there is none.
+struct SourceResult {
   Json result;
   std::string refused;
   double seconds = 0.0;
   std::string file_date;
 };
-using Sources = std::vector<Source>;
+using SourceResults = std::vector<SourceResult>;
 
-/// Which part of the error budget is the largest, where a gate on an error of a solve fails; it takes some
-/// more solves.
+/// The largest part of the error budget where a gate on an error of a solve fails; empty for other gates.
+/// Solves the scene up to three times more.
 std::string find_dominant_error(const Judgement& judgement, const ProcessPool& pool) {
   const Gate& gate = judgement.gate;
-  if (gate.kind != GateSource::scene || judgement.outcome != Outcome::failed ||
-      !judgement.value.is_number() || !is_error(gate.quantity)) {
+  const auto* const scene = std::get_if<SceneSource>(&gate.source);
+  if (scene == nullptr || judgement.outcome != Outcome::failed || !judgement.value.is_number() ||
+      !is_error(gate.quantity)) {
     return "";
   }
   const Budget budget =
-      error_budget(prepare_run({.scene = gate.source, .overrides = gate.overrides}), gate.quantity, pool);
+      error_budget(prepare_run({.scene = scene->file, .overrides = scene->overrides}), gate.quantity, pool);
   const double parts = budget.discretisation + budget.iteration + budget.rounding + budget.reference;
-  if (!std::isfinite(parts)) return "not known: solves that would tell have no such number";
+  if (!std::isfinite(parts)) return "unknown: the solves for the budget have no such number";
   return fmt::format(
       "{} (of {:.2g}: discretisation {:.2g}, iteration {:.2g}, rounding {:.1g}, reference {:.1g})",
       largest_part(budget), budget.observed, budget.discretisation, budget.iteration, budget.rounding,
       budget.reference);
 }
 
-/// Equal scenes are solved once, and the first gate has their time.
-void solve_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Sources& sources) {
-  RunBatch batch;
-  std::set<std::pair<fs::path, std::vector<std::string>>> timed;
-  for (std::size_t i = 0; i < gates.size(); ++i) {
-    if (gates[i].kind != GateSource::scene) continue;
-    const auto take = [&timed, &gate = gates[i], &source = sources[i]](const Json& result) {
-      source.result = result;
-      if (result.value("out_of_memory", false)) source.refused = result["message"];
-      const double seconds = seconds_of(result);
-      if (timed.emplace(gate.source, gate.overrides).second && std::isfinite(seconds))
-        source.seconds = seconds;
-    };
+/// Equal scenes are solved once; the first of them has the time.
+void solve_scenes(const std::vector<GateSource>& sources, const ProcessPool& pool, SourceResults& results) {
+  std::vector<PreparedRun> runs;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto* const scene = std::get_if<SceneSource>(&sources[i]);
+    if (scene == nullptr) continue;
     try {
-      batch.add({.scene = gates[i].source, .overrides = gates[i].overrides}, take);
+      runs.push_back(prepare_run({.scene = scene->file, .overrides = scene->overrides}));
+      places.push_back(i);
     } catch (const InputError& error) {
-      sources[i].refused = error.what();
+      results[i].refused = error.what();
     }
   }
-  batch.run(pool);
+  const std::vector<Json> solved = pool.run_prepared(runs);
+  std::set<GateSource> timed;
+  for (std::size_t k = 0; k < solved.size(); ++k) {
+    SourceResult& found = results[places[k]];
+    found.result = solved[k];
+    if (solved[k].value("out_of_memory", false)) found.refused = solved[k]["message"];
+    const double seconds = seconds_of(solved[k]);
+    if (timed.insert(sources[places[k]]).second && std::isfinite(seconds)) found.seconds = seconds;
+  }
 }
 
 /// A study that cannot be judged, for example since solves did not converge, is a result that failed.
-Json study_result(const Gate& gate, const ProcessPool& pool) {
-  const Study study = read_study(gate.source, gate.overrides);
+Json study_result(const StudySource& source, const ProcessPool& pool) {
+  const Study study = read_study(source.file, source.overrides);
   try {
     return run_study(study, pool);
   } catch (const InputError&) {
@@ -91,100 +96,104 @@ std::string date_of(const fs::path& file) {
                                         std::chrono::time_point_cast<std::chrono::seconds>(changed))));
 }
 
-Source read_result(const Gate& gate) {
-  const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
-  Source source;
-  source.result = read_json(gate.source, "a result file (JSON)" + made_by);
-  source.file_date = date_of(gate.source);
-  return source;
+SourceResult read_result(const ResultSource& source) {
+  const std::string made_by = source.made_by.empty() ? "" : "; it is made by: " + source.made_by;
+  SourceResult found;
+  found.result = read_json(source.file, "a result file (JSON)" + made_by);
+  found.file_date = date_of(source.file);
+  return found;
 }
 
 /// Equal studies are run once, each file is read once.
-void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Sources& sources) {
-  std::map<std::pair<fs::path, std::vector<std::string>>, Source> known;
-  for (std::size_t i = 0; i < gates.size(); ++i) {
-    const Gate& gate = gates[i];
-    if (gate.kind == GateSource::scene || gate.kind == GateSource::none) continue;
-    const auto [found, is_new] = known.try_emplace({gate.source, gate.overrides});
+void find_others(const std::vector<GateSource>& sources, const ProcessPool& pool, SourceResults& results) {
+  std::map<GateSource, SourceResult> known;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto* const study = std::get_if<StudySource>(&sources[i]);
+    const auto* const file = std::get_if<ResultSource>(&sources[i]);
+    if (study == nullptr && file == nullptr) continue;
+    const auto [found, is_new] = known.try_emplace(sources[i]);
     try {
-      if (is_new && gate.kind == GateSource::study) found->second.result = study_result(gate, pool);
-      if (is_new && gate.kind == GateSource::result) found->second = read_result(gate);
+      if (is_new && study != nullptr) found->second.result = study_result(*study, pool);
+      if (is_new && file != nullptr) found->second = read_result(*file);
     } catch (const InputError& error) {
       found->second.refused = error.what();
     }
-    sources[i] = found->second;
+    results[i] = found->second;
   }
 }
 
-/// A published number that cannot be compared, and why.
+/// The verdict of a published number that is not compared.
 Judgement not_compared(const Gate& gate) {
-  Judgement judgement;
-  judgement.gate = gate;
+  Judgement judgement = refuse(gate, std::get<Published>(gate.bound).why);
   judgement.outcome = Outcome::reported;
-  judgement.why = gate.published->not_compared;
+  judgement.factor = 0.0;
   return judgement;
 }
 
-Judgement judge(const Gate& gate, const Source& source, const Source* other) {
+/// other: the result that the gate is relative to, else nullptr.
+Judgement judge(const Gate& gate, const SourceResult& source, const SourceResult* other) {
   std::string refused = source.refused;
   if (refused.empty() && other != nullptr) refused = other->refused;
   if (!refused.empty()) return refuse(gate, refused);
-  if (gate.kind == GateSource::none) return not_compared(gate);
+  if (std::holds_alternative<std::monostate>(gate.source)) return not_compared(gate);
   try {
-    if (gate.published) return judge_published(gate, source.result);
-    return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);
+    if (std::holds_alternative<Published>(gate.bound)) return judge_published(gate, source.result);
+    if (other != nullptr) return judge_relative(gate, source.result, other->result);
+    return judge(gate, source.result);
   } catch (const InputError& error) {
     return refuse(gate, error.what());
   }
 }
 
+/// The source of the number that a gate is relative to: a result file, or a scene or study with the gate's
+/// own overrides.
+GateSource other_source(const GateSource& own, const fs::path& file) {
+  if (file.extension() == ".json") return ResultSource{.file = file, .folder = {}, .made_by = {}};
+  if (const auto* const study = std::get_if<StudySource>(&own)) return StudySource{file, study->overrides};
+  const auto* const scene = std::get_if<SceneSource>(&own);
+  return SceneSource{file, scene == nullptr ? std::vector<std::string>{} : scene->overrides};
+}
+
 }  // namespace
 
-std::vector<Gate> with_others(const std::vector<Gate>& gates) {
-  std::vector<Gate> all = gates;
+std::vector<GateSource> sources_of(const std::vector<Gate>& gates) {
+  std::vector<GateSource> sources;
+  for (const Gate& gate : gates) sources.push_back(gate.source);
   for (const Gate& gate : gates) {
-    if (gate.of.empty()) continue;
-    Gate other = gate;
-    other.source = gate.of;
-    if (gate.of.extension() == ".json") {
-      other.kind = GateSource::result;
-      other.overrides.clear();
-    } else if (gate.kind == GateSource::result) {
-      other.kind = GateSource::scene;
-    }
-    all.push_back(std::move(other));
+    if (const auto* const relative = std::get_if<RelativeTo>(&gate.bound))
+      sources.push_back(other_source(gate.source, relative->file));
   }
-  return all;
+  return sources;
 }
 
 std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool) {
   std::vector<PreparedRun> runs;
-  for (const Gate& gate : with_others(gates)) {
-    if (gate.kind == GateSource::result || gate.kind == GateSource::none) continue;
+  for (const GateSource& source : sources_of(gates)) {
     try {
-      if (gate.kind == GateSource::scene) {
-        runs.push_back(prepare_run({.scene = gate.source, .overrides = gate.overrides}));
-        continue;
+      if (const auto* const scene = std::get_if<SceneSource>(&source)) {
+        runs.push_back(prepare_run({.scene = scene->file, .overrides = scene->overrides}));
+      } else if (const auto* const study = std::get_if<StudySource>(&source)) {
+        std::ranges::move(study_runs(read_study(study->file, study->overrides), pool.memory_limit()),
+                          std::back_inserter(runs));
       }
-      std::ranges::move(study_runs(read_study(gate.source, gate.overrides), pool.memory_limit()),
-                        std::back_inserter(runs));
-    } catch (const InputError&) {  // its gate is refused when it is judged
+    } catch (const InputError&) {  // run_gates() refuses its gate
     }
   }
   return runs;
 }
 
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {
-  const std::vector<Gate> all = with_others(gates);
-  Sources sources(all.size());
-  solve_scenes(all, pool, sources);
-  take_others(all, pool, sources);
+  const std::vector<GateSource> sources = sources_of(gates);
+  SourceResults results(sources.size());
+  solve_scenes(sources, pool, results);
+  find_others(sources, pool, results);
   std::vector<Judgement> judgements;
   std::size_t others = gates.size();
   for (std::size_t i = 0; i < gates.size(); ++i) {
-    judgements.push_back(judge(gates[i], sources[i], gates[i].of.empty() ? nullptr : &sources[others++]));
-    judgements.back().seconds = sources[i].seconds;
-    judgements.back().file_date = sources[i].file_date;
+    const bool relative = std::holds_alternative<RelativeTo>(gates[i].bound);
+    judgements.push_back(judge(gates[i], results[i], relative ? &results[others++] : nullptr));
+    judgements.back().seconds = results[i].seconds;
+    judgements.back().file_date = results[i].file_date;
     judgements.back().dominant_error = find_dominant_error(judgements.back(), pool);
   }
   return judgements;

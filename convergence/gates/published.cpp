@@ -1,12 +1,13 @@
-
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/published.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <regex>
 #include <utility>
+#include <variant>
 
 #include "convergence/results/quantity.hpp"
 #include "solver/input/input_error.hpp"
@@ -14,7 +15,7 @@
 namespace slipstick::convergence {
 namespace {
 
-/// How far our number may be off, absolute: what the result says of it; none where it says nothing.
+/// The error that the result states of our number, absolute; none where it states none.
 std::optional<double> own_error(const FoundQuantity& found) {
   const double size = std::abs(found.value->get<double>());
   for (auto object = found.within.rbegin(); object != found.within.rend(); ++object) {
@@ -27,7 +28,6 @@ std::optional<double> own_error(const FoundQuantity& found) {
   return {};
 }
 
-/// The published number from ours, and ours from the published one.
 double in_unit_of_publication(const Published& published, double ours) {
   return published.inverse ? published.times / ours : published.times * ours;
 }
@@ -35,105 +35,117 @@ double in_our_unit(const Published& published, double value) {
   return published.inverse ? published.times / value : value / published.times;
 }
 
-/// The gate with bounds on our number.
-Gate bounded_by_publication(Gate gate, const Json& result) {
+/// Our own error, absolute; 0 where there is no number.
+double error_of_ours(const Gate& gate, const Json& result) {
   const FoundQuantity found = find_quantity(result, gate.quantity);
-  Published& published = *gate.published;
-  if (found.value != nullptr && found.value->is_number()) {
-    const double size = std::abs(found.value->get<double>());
-    const std::optional<double> error =
-        published.relative_error ? *published.relative_error * size : own_error(found);
-    if (!error) {
-      throw solver::InputError(gate.file.string() + ": " + gate.id, "quantity", gate.quantity,
-                               "a number whose own error the result states, as a study's extrapolated values "
-                               "and exact answers have one");
-    }
-    published.own_error = *error;
-  }
-  const double open = published.half_unit + published.argument_error;
-  const double one_end = in_our_unit(published, published.value - open);
-  const double other_end = in_our_unit(published, published.value + open);
-  gate.above = std::min(one_end, other_end) - published.own_error;
-  gate.below = std::max(one_end, other_end) + published.own_error;
-  return gate;
+  if (found.value == nullptr || !found.value->is_number()) return 0.0;
+  const auto& relative = std::get<Published>(gate.bound).relative_error;
+  const std::optional<double> error =
+      relative ? *relative * std::abs(found.value->get<double>()) : own_error(found);
+  if (error) return *error;
+  throw solver::InputError(gate.file.string() + ": " + gate.id, "quantity", gate.quantity,
+                           "a number with an error in the result, such as a study's extrapolated value "
+                           "or an exact answer");
 }
 
-/// Our own error over half a unit of the last digit.
-double own_half_units(const Published& published, double ours) {
-  return published.own_error * std::abs(in_unit_of_publication(published, ours) / ours) / published.half_unit;
+/// The interval of our number in which it agrees.
+Interval interval_of(const Published& published, double own_error) {
+  const double open = published.number.half_unit + published.argument_error;
+  const double one_end = in_our_unit(published, published.number.value - open);
+  const double other_end = in_our_unit(published, published.number.value + open);
+  return {std::min(one_end, other_end) - own_error, std::max(one_end, other_end) + own_error};
+}
+
+/// The reason of the gate file, where it expects this comparison.
+std::string reason_for(const Published& published, Comparison comparison) {
+  return published.expected == comparison ? published.why : "";
 }
 
 }  // namespace
 
-std::optional<Published> read_printed(const std::string& text) {
+std::string to_string(Comparison comparison) {
+  constexpr std::array kWords{"agrees", "differs", "undecided", "not compared"};
+  return kWords.at(static_cast<std::size_t>(comparison));
+}
+
+std::optional<PrintedNumber> read_printed(const std::string& text) {
   static const std::regex fraction(R"((\d{1,9})/([1-9]\d{0,8}))");
   static const std::regex form(R"(([+-]?\d+(?:\.(\d*))?)(?:[eE]([+-]?\d{1,2}))?)");
   std::smatch parts;
-  Published published;
-  published.text = text;
   if (std::regex_match(text, parts, fraction)) {
-    published.value = std::stod(parts[1]) / std::stod(parts[2]);
-    constexpr double kFractionDigits = 12.0;  // as far as exact answers are good
-    published.half_unit = 0.5 * std::pow(10.0, -kFractionDigits) * std::abs(published.value);
-    return published;
+    constexpr double kFractionDigits = 12.0;  // accuracy of exact answers
+    const double value = std::stod(parts[1]) / std::stod(parts[2]);
+    return PrintedNumber{text, value, 0.5 * std::pow(10.0, -kFractionDigits) * std::abs(value)};
   }
   if (!std::regex_match(text, parts, form)) return {};
   const int exponent = parts[3].matched ? std::stoi(parts[3]) : 0;
   const auto decimals = static_cast<int>(parts[2].length());
-  published.value = std::stod(text);
-  published.half_unit = 0.5 * std::pow(10.0, exponent - decimals);
-  return published;
+  return PrintedNumber{text, std::stod(text), 0.5 * std::pow(10.0, exponent - decimals)};
 }
 
-Judgement judge_published(Gate gate, const Json& result) {
-  Judgement judgement = judge(bounded_by_publication(std::move(gate), result), result);
-  const Published& published = *judgement.gate.published;
+std::optional<OwnNumber> own_number(const Judgement& judgement) {
+  if (!judgement.value.is_number()) return {};
+  const auto& published = std::get<Published>(judgement.gate.bound);
+  const double ours = judgement.value.get<double>();
+  const double shown = in_unit_of_publication(published, ours);
+  const double scale = std::abs(shown / ours);
+  return OwnNumber{shown, judgement.own_error * scale,
+                   judgement.own_error * scale / published.number.half_unit};
+}
+
+Judgement judge_published(const Gate& gate, const Json& result) {
+  const auto& published = std::get<Published>(gate.bound);
+  const double own_error = error_of_ours(gate, result);
+  Judgement judgement = judge_within(gate, interval_of(published, own_error), result);
+  judgement.own_error = own_error;
   const bool within =
       judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
-  const double own =
-      judgement.value.is_number() ? own_half_units(published, judgement.value.get<double>()) : 0.0;
-  const bool known = own * published.half_unit <= published.half_unit + published.argument_error;
+  const double half_units = own_number(judgement).value_or(OwnNumber{}).half_units;
+  const double half_unit = published.number.half_unit;
+  const bool known = half_units * half_unit <= half_unit + published.argument_error;
+  const bool undecided = published.expected == Comparison::undecided;
   if (within && !known) {
-    judgement.outcome = published.undecided.empty() ? Outcome::refused : Outcome::reported;
+    judgement.outcome = undecided ? Outcome::reported : Outcome::refused;
     judgement.why = fmt::format(
-        "our own error is {:.3g} half units of the last printed digit: it cannot be compared at its "
-        "digits{}",
-        own,
-        published.undecided.empty() ? "; improve ours, or say why: undecided" : ": " + published.undecided);
-  } else if (!published.undecided.empty() && judgement.outcome == Outcome::passed) {
+        "our own error is {:.3g} half units of the last printed digit, too large for a comparison{}",
+        half_units,
+        undecided ? ": " + published.why : "; reduce our error, or give the reason in `undecided`");
+  } else if (undecided && judgement.outcome == Outcome::passed) {
     judgement.outcome = Outcome::passed_unexpectedly;
-    judgement.why = "agrees with the published number: remove undecided";
+    judgement.why = "agrees with the published number: remove `undecided`";
   }
   return judgement;
 }
 
-std::string published_outcome(const Judgement& judgement) {
-  if (!judgement.gate.published) return "";
-  if (judgement.outcome == Outcome::passed) return "agrees";
-  if (judgement.outcome == Outcome::failed_as_expected) return "differs";
-  if (judgement.outcome != Outcome::reported) return "";
-  return judgement.gate.published->undecided.empty() ? "not compared" : "undecided";
+std::optional<Comparison> comparison_of(const Judgement& judgement) {
+  const auto* const published = std::get_if<Published>(&judgement.gate.bound);
+  if (published == nullptr) return {};
+  if (judgement.outcome == Outcome::passed) return Comparison::agrees;
+  if (judgement.outcome == Outcome::failed_as_expected) return Comparison::differs;
+  if (judgement.outcome != Outcome::reported) return {};
+  return published->expected == Comparison::undecided ? Comparison::undecided : Comparison::not_compared;
 }
 
 Json published_json(const Judgement& judgement) {
-  const Published& published = *judgement.gate.published;
-  Json json{{"text", published.text},
-            {"value", published.value},
-            {"half_unit", published.half_unit},
+  const auto& published = std::get<Published>(judgement.gate.bound);
+  const auto& [text, value, half_unit] = published.number;
+  const std::optional<Comparison> comparison = comparison_of(judgement);
+  Json json{{"text", text},
+            {"value", value},
+            {"half_unit", half_unit},
             {"source", published.source},
             {"seen", published.seen},
             {"argument_error", published.argument_error},
-            {"differs", published.differs},
-            {"undecided", published.undecided},
-            {"not_compared", published.not_compared},
-            {"comparison", published_outcome(judgement)}};
-  if (!judgement.value.is_number()) return json;
-  const double ours = judgement.value.get<double>();
-  const double shown = in_unit_of_publication(published, ours);
-  json["ours"] = shown;
-  json["own_error"] = published.own_error * std::abs(shown / ours);
-  json["own_error_half_units"] = own_half_units(published, ours);
-  json["deviation"] = (shown - published.value) / published.half_unit;
+            {"differs", reason_for(published, Comparison::differs)},
+            {"undecided", reason_for(published, Comparison::undecided)},
+            {"not_compared", reason_for(published, Comparison::not_compared)},
+            {"comparison", comparison ? to_string(*comparison) : ""}};
+  if (const std::optional<OwnNumber> ours = own_number(judgement)) {
+    json.update(Json{{"ours", ours->value},
+                     {"own_error", ours->error},
+                     {"own_error_half_units", ours->half_units},
+                     {"deviation", (ours->value - value) / half_unit}});
+  }
   return json;
 }
 

@@ -17,7 +17,7 @@ def values(path):
 
 
 def gates_in(path):
-    """The tables of all gates, with what their groups say for them."""
+    """The tables of all gates, with the keys of their groups."""
     read = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     return read.get("gate", []) + [{**group, **gate} for group in read.get("group", []) for gate in group["gate"]]
 
@@ -37,21 +37,21 @@ def main(words):
     found = 0
     for path, other in zip(words[2:], others):
         if first.keys() != allowed.keys() or other.keys() != allowed.keys():
-            print(f"{path}: holds other gates than {words[0]}", file=sys.stderr)
+            print(f"{path}: has other gates than {words[0]}", file=sys.stderr)
             return 2
         worst = 0.0
         for name, spread in allowed.items():
             apart = difference(first[name], other[name])
             if spread is None:
                 if apart:
-                    print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; nothing is said of how far apart")
-                found += apart == math.inf  # words, such as what a model leaves out
+                    print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; the gate has no platform_spread")
+                found += apart == math.inf  # words, such as the parts that a model omits
             elif not apart <= spread:
-                print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; allowed apart: {spread:g}")
+                print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; allowed difference: {spread:g}")
                 found += 1
             else:
                 worst = max(worst, apart / spread)
-        print(f"{path}: {len(allowed)} numbers; of those that keep to it the worst takes {worst:.2g} of what is allowed")
+        print(f"{path}: {len(allowed)} numbers; the largest allowed difference is {worst:.2g} of its platform_spread")
     return 1 if found else 0
 
 

@@ -11,7 +11,9 @@
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/check/check.hpp"
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/failed_runs.hpp"
@@ -197,8 +199,9 @@ std::vector<fs::path> settings_files(const fs::path& folder) {
 Json literature(const fs::path& folder, bool studies, const ProcessPool& pool) {
   std::vector<Gate> gates;
   for (const fs::path& file : settings_files(folder)) {
-    std::ranges::copy_if(read_gates(file), std::back_inserter(gates),
-                         [&](const Gate& gate) { return studies || gate.kind != GateSource::study; });
+    std::ranges::copy_if(read_gates(file), std::back_inserter(gates), [&](const Gate& gate) {
+      return studies || !std::holds_alternative<StudySource>(gate.source);
+    });
   }
   return gates_json(run_gates(gates, pool));
 }

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_reader.hpp"
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/studies/study.hpp"
 

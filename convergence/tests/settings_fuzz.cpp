@@ -1,6 +1,6 @@
 // Any text is a study, a file of gates or of hard cases, or is refused.
 
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_reader.hpp"
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/tests/fuzz_file.hpp"

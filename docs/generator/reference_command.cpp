@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "convergence/exchange/solver_program.hpp"
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_reader.hpp"
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/studies/study.hpp"
 #include "docs/generator/command_line.hpp"

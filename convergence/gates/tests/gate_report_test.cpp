@@ -1,7 +1,8 @@
-// What is written about gates.
+// Texts, JUnit, Markdown and JSON of judged gates.
 
 #include <gmock/gmock.h>
 
+#include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/tests/made_gates.hpp"
 #include "convergence/results/output.hpp"
 
@@ -33,9 +34,8 @@ std::vector<Judgement> one_of_each() {
 
 TEST(GateReport, TextExplainsWhatDoesNotPass) {
   const std::string text = gates_text(one_of_each());
-  EXPECT_THAT(text, AllOf(HasSubstr("x is 4, must be below 1 in size: 4 times the bound"),
-                          HasSubstr("likely to blame: discretisation"), HasSubstr("users read this number"),
-                          HasSubstr("measured 1e-6, factor 10"),
+  EXPECT_THAT(text, AllOf(HasSubstr("x is 4"), HasSubstr("discretisation"),
+                          HasSubstr("users read this number"), HasSubstr("measured 1e-6, factor 10"),
                           HasSubstr("slipstick gate gates/some.toml --only 'bad <a> & \"b\" | c, d: 100 %'"),
                           HasSubstr("slipstick gate gates/some.toml --only repaired")));
   EXPECT_THAT(

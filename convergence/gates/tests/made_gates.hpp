@@ -7,7 +7,7 @@
 
 namespace slipstick::convergence {
 
-/// A solve's result as far as gates look at it; its reference is good to 1e-15.
+/// A solve's result with one quantity; its reference has a relative error of 1e-15.
 inline Json solve_with(const std::string& quantity, const Json& value) {
   Json result{{"status", "converged"}, {"exact", {{"relative_uncertainty", 1e-15}}}};
   result[quantity] = value;
@@ -19,6 +19,7 @@ inline Gate gate_on(const std::string& quantity) {
   gate.file = "gates/some.toml";
   gate.line = 12;
   gate.id = "some-gate";
+  gate.source = SceneSource{"scene.toml", {}};
   gate.quantity = quantity;
   gate.basis = "measured 1e-6, factor 10";
   gate.reason = "users read this number";
@@ -27,19 +28,19 @@ inline Gate gate_on(const std::string& quantity) {
 
 inline Gate below(const std::string& quantity, double bound) {
   Gate gate = gate_on(quantity);
-  gate.below = bound;
+  gate.bound = Below{bound};
   return gate;
 }
 
 inline Gate between(const std::string& quantity, double low, double high) {
-  Gate gate = below(quantity, high);
-  gate.above = low;
+  Gate gate = gate_on(quantity);
+  gate.bound = Between{low, high};
   return gate;
 }
 
 inline Gate equals(const std::string& quantity, const Json& value) {
   Gate gate = gate_on(quantity);
-  gate.equals = value;
+  gate.bound = Equals{value};
   return gate;
 }
 

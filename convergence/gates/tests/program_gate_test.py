@@ -51,7 +51,7 @@ class GateProgram(ProgramTest):
         self.gate("bad.toml", "--only", "known")
         self.gate("good.toml", "watched.toml")
         self.gate("repaired.toml", code=1)
-        self.gate("refused.toml", "bad.toml", code=2, says="tighter than its reference allows")
+        self.gate("refused.toml", "bad.toml", code=2, says="platform spread")
         self.gate("empty.toml", code=2, says="no gate ran")
         self.gate("good.toml", "--only", "goood", code=2)
         self.gate(code=2)
@@ -71,14 +71,14 @@ class GateProgram(ProgramTest):
         stuck = 3 / 16 * math.pi / 8  # a bonded punch's twist under pi/8 mu W a
         self.gate(self.write("right.toml", exact("flat_punch", stuck)))
         self.gate(self.write("wrong.toml", exact("flat_punch", stuck * (1 + 1e-9))), code=1)
-        self.gate(self.write("none.toml", exact("ellipse", stuck)), code=1, says=("the solve was refused", "solver.model"))
+        self.gate(self.write("none.toml", exact("ellipse", stuck)), code=1, says="solver.model")
 
-    def test_says_of_which_day_a_result_file_is(self):
+    def test_shows_the_day_of_a_result_file(self):
         self.write("work.json", counts(19))
         self.write("counts.toml", COUNTED)
         noon = datetime.fromisoformat("2024-05-01T12:00:00+00:00").timestamp()
         os.utime(self.folder / "work.json", (noon, noon))
-        self.gate("counts.toml", "--json", "gates.json", says="work.json is of 2024-05-01")
+        self.gate("counts.toml", "--json", "gates.json", says=("work.json", "2024-05-01"))
         self.assertEqual(json.loads((self.folder / "gates.json").read_text())["gates"][0]["file_date"], "2024-05-01")
 
     def test_a_number_is_held_to_that_of_another_result(self):
@@ -87,16 +87,16 @@ class GateProgram(ProgramTest):
         self.write("before.json", counts(20))
         for number, code in ((18.1, 0), (21.9, 0), (17.9, 1), (22.1, 1)):
             self.write("work.json", counts(number))
-            self.gate("relative.toml", code=code, says="within 0.1 of 20, that of before.json")
+            self.gate("relative.toml", code=code, says="before.json")
         self.write("before.json", counts(-20))
         self.write("work.json", counts(-21))
         self.gate("relative.toml")
         for number in ("null", "0", '"many"'):
             self.write("before.json", counts(number))
-            self.gate("relative.toml", code=2, says=["before.json", "a number that is not zero"])
+            self.gate("relative.toml", code=2, says="before.json")
         (self.folder / "before.json").unlink()
         self.gate("relative.toml", code=2, says="before.json")
-        for wrong, says in (("below = 3", "beside of"), ("within = 0", "within"), ("equals = 3", "beside of")):
+        for wrong, says in (("below = 3", "].below"), ("within = 0", "within"), ("equals = 3", "].equals")):
             self.write("wrong.toml", relative.replace("within = 0.1", "") + wrong if wrong.startswith("within")
                        else relative + wrong)
             self.gate("wrong.toml", code=2, says=says)
@@ -108,7 +108,7 @@ class GateProgram(ProgramTest):
         self.write("rough.toml", PAPER.read_text().replace("friction = 0.1", "friction = 0.2"))
         for scene, within, code in ((PAPER, 1e-12, 0), ("rough.toml", 0.5001, 0), ("rough.toml", 0.4999, 1)):
             self.write("scenes.toml", gate("twists", f"of = '{scene}'\nwithin = {within}", quantity="twist_angle"))
-            self.gate("scenes.toml", code=code, says=f"that of {Path(scene).name}")
+            self.gate("scenes.toml", code=code, says=Path(scene).name)
 
     def test_writes_its_reports_whatever_else_is_wrong(self):
         self.write("good.toml", gate("good", LOOSE))
@@ -139,12 +139,12 @@ class GateProgram(ProgramTest):
         failure = cases[name.replace('"', "''")].find("failure")
         self.assertEqual((failure.get("type"), failure.get("message")),
                          ("failed", "counts.some-case.applications is 19, must be between 17 and 18"))
-        self.assertIn("where the bound comes from: counted 19", failure.text)
-        self.assertIn("reported: certificate.gap is ", cases["watched"].find("skipped").get("message"))
+        self.assertIn("counted 19", failure.text)
+        self.assertIn("certificate.gap", cases["watched"].find("skipped").get("message"))
 
-    def test_says_what_is_to_blame(self):
+    def test_names_the_largest_part_of_the_error(self):
         self.write("coarse.toml", gate("coarse", "below = 1e-6", quantity="twist_error"))
-        self.gate("coarse.toml", code=1, says=("likely to blame: discretisation", "--only coarse"))
+        self.gate("coarse.toml", code=1, says=("discretisation", "--only coarse"))
 
     def test_judges_studies(self):
         self.write("study.toml", f"scene = '{PAPER}'\ncells = [12, 16]\n")
@@ -173,7 +173,7 @@ class GateProgram(ProgramTest):
         self.gate("gates.toml", "--results", "results")
         for broken in ("{", "", '{"counts": NaN}', '{"counts": 1e400}'):
             self.write("work.json", broken)
-            self.gate("gates.toml", code=2, says=("work.json", "is not JSON"))
+            self.gate("gates.toml", code=2, says="work.json")
 
     def test_computes_equal_scenes_once(self):
         self.write("two.toml", gate("one", LOOSE) + gate("two", "below = 1e-6"))

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "convergence/gates/gate.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate_run.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
@@ -15,11 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   convergence::Gate gate;
   gate.id = "fuzzed";
   gate.file = "gates.toml";
-  gate.kind = convergence::GateSource::result;
-  gate.source = file.write(text.substr(std::min(end + 1, text.size())));
+  gate.source = convergence::ResultSource{
+      .file = file.write(text.substr(std::min(end + 1, text.size()))), .folder = {}, .made_by = {}};
   gate.quantity = std::string(text.substr(0, end));
-  gate.below = 1.0;
-  gate.above = 0.0;
+  gate.bound = convergence::Between{0.0, 1.0};
   gate.basis = "any";
   const auto judgements = convergence::run_gates({gate}, pool);
   if (judgements.size() != 1) std::abort();

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "convergence/gates/gate.hpp"
+#include "convergence/runs/process_pool.hpp"
+
+/// The solves, studies and files by which gates are judged.
+namespace slipstick::convergence {
+
+/// 1. Solves all scenes in parallel and equal ones once, runs the studies, reads the files; 2. judges the
+/// gates;
+/// 3. finds the largest part of the error where a gate on an error fails. A gate whose source cannot be read
+/// is refused, and the others are judged.
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
+
+/// The sources of the gates in their order, then those of the numbers that gates are relative to.
+std::vector<GateSource> sources_of(const std::vector<Gate>& gates);
+
+/// The solves of step 1. A source that cannot be read has none.
+std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool);
+
+}  // namespace slipstick::convergence
