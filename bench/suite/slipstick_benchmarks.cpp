@@ -20,7 +20,7 @@ void say_where_times_come_from() {
 #else
   benchmark::AddCustomContext("build_type", "debug");
 #endif
-  const auto provenance = slipstick::convergence::provenance(1);
+  const slipstick::convergence::Json provenance = slipstick::convergence::provenance(1);
   for (const auto& [key, value] : provenance.items()) {
     if (value.is_string()) benchmark::AddCustomContext(key, value.get<std::string>());
   }

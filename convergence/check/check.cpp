@@ -9,7 +9,10 @@
 #include "convergence/check/examination.hpp"
 #include "convergence/check/verdict.hpp"
 #include "convergence/oracle/errors.hpp"
+#include "convergence/results/make_record.hpp"
 #include "convergence/results/provenance.hpp"
+#include "convergence/results/record_text.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/contact/stick_front.hpp"
 #include "solver/step/describe_step.hpp"
 
@@ -113,9 +116,9 @@ void add_errors(Json& json, const Examination& e, const solver::StickFront& stic
   set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
   const solver::Grid grid = c.grid_in_m();
   json["pressure_error"] =
-      field_error_json(pressure_error(c.stress_unit * c.pressure, oracle, grid), kNoNumber);
+      to_json(make_field_error(pressure_error(c.stress_unit * c.pressure, oracle, grid), kNoNumber));
   json["traction_error"] =
-      traction_error_json(traction_error(c.stress_unit * c.traction, oracle, grid), unknown);
+      to_json(make_traction_error(traction_error(c.stress_unit * c.traction, oracle, grid), unknown));
 }
 
 /// The numbers of the right answer on this mesh.
@@ -132,9 +135,9 @@ Json reference_json(const Examination& e) {
   json["noise"] = reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
   if (e.exact.oracle && e.exact.oracle->shear) {
     json["traction_error"] =
-        traction_error_json(traction_error(e.contact.stress_unit * reference.right.traction, *e.exact.oracle,
-                                           e.contact.grid_in_m()),
-                            kNoNumber);
+        to_json(make_traction_error(traction_error(e.contact.stress_unit * reference.right.traction,
+                                                   *e.exact.oracle, e.contact.grid_in_m()),
+                                    kNoNumber));
   }
   return json;
 }
@@ -200,12 +203,13 @@ std::string traction_text(const Json& r) {
 std::string certificate_text(const Json& r) {
   const Json& certificate = r["certificate"];
   const Json& direction = r["slip_direction"];
+  const solver::FrictionKind law = friction_law_of(r.value("friction_law", ""));
   return text_line("certificate",
                    fmt::format("moment off by {}, |q| above {} by {}", number_text(certificate["moment"]),
-                               bound_text(r), number_text(certificate["friction_bound"]))) +
+                               solver::bound_text(law), number_text(certificate["friction_bound"]))) +
          text_line("slip direction",
                    fmt::format("{} degrees off in the mean, {} at most ({})", number_text(direction["mean"]),
-                               number_text(direction["max"]), right_direction_text(r)));
+                               number_text(direction["max"]), right_direction_text(law)));
 }
 
 }  // namespace
@@ -232,7 +236,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   add_field(json, e);
   add_state(json, e, stick);
   add_errors(json, e, stick);
-  json["certificate"] = certificate_json(e.certificate, kBroken);
+  json["certificate"] = to_json(make_certificate(e.certificate, kBroken));
   set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
   set_number(json["slip_direction"], "max", e.direction.max, kBroken);
   json["yardstick"] = reference_json(e);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/output.hpp"
@@ -180,24 +181,27 @@ ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& file
   }
 }
 
-Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files) {
-  Json own = Json::object();
+OwnNumbers read_own_numbers(const SolverProgram& program, const ExchangeFiles& files) {
+  OwnNumbers own;
   if (!fs::is_regular_file(files.numbers)) return own;
   try {
     const Json read =
         read_json(files.numbers, "JSON with twist_angle, iterations, seconds, converged, message");
-    for (const char* key : {"twist_angle", "twist", "iterations", "seconds"}) {
-      if (read.is_object() && read.contains(key) && read[key].is_number()) own[key] = read[key];
-    }
+    const auto find = [&](const char* key, auto& value, bool (Json::*is_right)() const noexcept) {
+      const auto found = read.find(key);
+      if (found != read.end() && ((*found).*is_right)()) found->get_to(value.emplace());
+    };
+    std::optional<std::string> message;
+    find("twist_angle", own.twist_angle, &Json::is_number);
+    find("twist", own.twist, &Json::is_number);
+    find("iterations", own.iterations, &Json::is_number);
+    find("seconds", own.seconds, &Json::is_number);
+    find("converged", own.converged, &Json::is_boolean);
+    find("message", message, &Json::is_string);
+    own.message = plain_text(message.value_or(""));
     // Its older name, rad here, which in results is G a^2 phi/(mu W).
-    if (own.contains("twist_angle")) own.erase("twist");
-    if (own.contains("twist")) own["twist_angle"] = own["twist"];
-    if (read.is_object() && read.contains("converged") && read["converged"].is_boolean()) {
-      own["converged"] = read["converged"];
-    }
-    if (read.is_object() && read.contains("message") && read["message"].is_string()) {
-      own["message"] = plain_text(read["message"].get<std::string>());
-    }
+    if (own.twist_angle) own.twist.reset();
+    if (own.twist) own.twist_angle = own.twist;
   } catch (const solver::InputError& error) {
     throw ProgramFailure(fmt::format("{} wrote numbers that cannot be read: {}", program.name, error.what()));
   }

@@ -58,7 +58,7 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
   const ProgramEnd end = run_solver_program(program, files, allowed.tied_by);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const ReadFields read = read_exchange(program, files, answer.scene, posed);
-  const Json own = read_own_numbers(program, files);
+  const OwnNumbers own = read_own_numbers(program, files);
 
   if (!read.tractions) answer.scene = pressed_alone(std::move(answer.scene));
   answer.exact = find_oracle(read.tractions ? scene : answer.scene);
@@ -68,24 +68,23 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
     answer.solution.status = solver::Status::not_converged;
     answer.solution.message = off + ": no answer to these loads, whatever " + program.name + " says";
   }
-  if (!own.value("converged", true)) {
+  if (!own.converged.value_or(true)) {
     answer.solution.status = solver::Status::not_converged;
-    answer.solution.message = own.value("message", program.name + " says that it did not converge");
+    answer.solution.message =
+        own.message.empty() ? program.name + " says that it did not converge" : own.message;
   }
-  const double said = own.contains("seconds") ? own["seconds"].get<double>() : wall;
+  const double said = own.seconds.value_or(wall);
   const double seconds = said >= 0.0 && said <= wall ? said : wall;
   answer.solution.seconds = {.traction = seconds, .total = seconds};
   answer.solution.iterations =
-      own.contains("iterations")
-          ? static_cast<int>(std::clamp(own["iterations"].get<double>(), 0.0, kMaxIterations))
-          : 0;
-  answer.program = {{"name", program.name},
-                    {"file", program.file.string()},
-                    {"version", allowed.version ? *allowed.version : version_of(program, allowed.tied_by)},
-                    {"fields", read.tractions ? "pressure and tractions" : "pressure"},
-                    {"wall_seconds", wall},
-                    {"cpu_seconds", end.cpu_seconds},
-                    {"own", own}};
+      static_cast<int>(std::clamp(own.iterations.value_or(0.0), 0.0, kMaxIterations));
+  answer.program = {.name = program.name,
+                    .file = program.file.string(),
+                    .version = allowed.version ? *allowed.version : version_of(program, allowed.tied_by),
+                    .fields = read.tractions ? "pressure and tractions" : "pressure",
+                    .wall_seconds = wall,
+                    .cpu_seconds = end.cpu_seconds,
+                    .own = own};
   return answer;
 }
 

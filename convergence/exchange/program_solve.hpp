@@ -1,12 +1,10 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "convergence/exchange/allowed_programs.hpp"
 #include "convergence/exchange/given_fields.hpp"
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/results/result_parts.hpp"
+#include "convergence/results/solve_record.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
@@ -18,7 +16,7 @@ struct ProgramAnswer {
   solver::Scene scene;        ///< under the loads that the program was given, in N and N m
   OracleAnswer exact;         ///< at the same part of its limit moment, where a load is a ratio
   solver::Solution solution;  ///< worked out from its fields alone
-  Json program;               ///< name, version, its own numbers, seconds
+  ProgramRecord program;
 };
 
 /// Gives the scene to its program and works out the answer from the field that it writes. A load that is a
@@ -47,6 +45,6 @@ ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& file
 
 /// The program's own numbers, as far as it wrote any: twist_angle (rad), iterations, seconds, converged,
 /// message.
-Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
+OwnNumbers read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
 
 }  // namespace slipstick::convergence

@@ -49,7 +49,7 @@ Json uncertainty(const RunSpec& base, const Scene& scene, const Meshes& meshes, 
     std::vector<std::string> overrides = base.overrides;
     if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
     overrides.insert(overrides.end(), changed.begin(), changed.end());
-    return solve_scene(solver::read_scene(base.scene, overrides), {.cache = cache}).result;
+    return to_json(solve_scene(solver::read_scene(base.scene, overrides), {.cache = cache}).record);
   });
 }
 

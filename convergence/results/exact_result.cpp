@@ -1,8 +1,11 @@
 #include "convergence/results/exact_result.hpp"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
+#include <cmath>
+#include <memory>
+
+#include "convergence/results/make_record.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/within_double.hpp"
@@ -36,11 +39,6 @@ std::vector<solver::Omission> omissions(const solver::Scene& scene) {
   return left_out;
 }
 
-/// Null under each of these keys, for one reason.
-void set_all_missing(Json& json, const std::vector<std::string>& keys, const std::string& reason) {
-  for (const std::string& key : keys) set_missing(json, key, reason);
-}
-
 Oracle find_required_oracle(const solver::Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   const std::string file = scene.source.string();
@@ -66,44 +64,34 @@ Oracle require_oracle(const solver::Scene& scene) {
   return solver::within_double(scene, [&] { return find_required_oracle(scene); });
 }
 
-Json exact_result(const solver::Scene& scene, const Oracle& oracle, double seconds) {
-  Json json;
-  json["name"] = scene.name;
-  json["status"] = "converged";
-  json["method"] = "exact";
-  json["profile"] = oracle.profile->name();
-  json["model"] = model_json(omissions(scene));
-  set_all_missing(
-      json, {"operator", "cells", "cell_size", "contact_cells", "stick_cells", "contact_area", "stick_area"},
-      "the exact solution needs no grid");
-  const std::string unknown = "the exact solution does not say";
-  set_number(json, "contact_radius", oracle.contact_radius, unknown);
-  set_number(json, "stick_radius", oracle.stick_radius, unknown);
-  set_all_missing(json, {"contact_radius_counted", "stick_radius_counted"}, "there are no cells to count");
-  json["stick_ratio"] = oracle.state.stick_ratio;
-  add_friction(json, scene.friction, oracle.friction_force);
-  json["normal_load"] = *scene.steps.back().normal;
-  set_number(json, "peak_pressure", oracle.peak_pressure,
-             std::isinf(oracle.peak_pressure) ? "infinite" : unknown);
-  set_number(json, "approach", oracle.approach, unknown);
-  json["twist_angle"] = oracle.twist_angle;
-  json["moment"] = oracle.moment;
-  set_number(json, "moment_limit", oracle.moment_limit, unknown);
-  json["moment_ratio"] = oracle.state.moment_ratio;
-  json["twist"] = oracle.state.twist;
-  json["force"] = oracle.force;
-  json["displacement"] = oracle.displacement;
-  set_number(json, "dissipated", oracle.dissipated, unknown);
-  json["iterations"] = 0;
-  json["operator_applications"] = 0;
-  set_all_missing(json, {"certificate", "slip_direction"},
-                  "nothing to certify: the exact solution meets Coulomb's law everywhere");
-  set_all_missing(json, {"twist_error", "moment_error", "stick_radius_error", "traction_error"},
-                  "this is the exact answer");
-  json["seconds"] = {{"total", seconds}};
-  json["peak_bytes"] = peak_bytes();
-  json["provenance"] = provenance(1);
-  return json;
+SolveRecord exact_record(const solver::Scene& scene, const Oracle& oracle, double seconds) {
+  const auto known = [](double value) { return number_or(value, "the exact solution does not say"); };
+  SolveRecord record;
+  record.status = RunStatus::converged;
+  record.name = scene.name;
+  record.problem = {.method = "exact", .profile = oracle.profile->name(), .left_out = omissions(scene)};
+  EndRecord& end = record.end;
+  end.contact = {.contact_radius = known(oracle.contact_radius),
+                 .stick_radius = known(oracle.stick_radius),
+                 .stick_ratio = {oracle.state.stick_ratio},
+                 .normal_load = {*scene.steps.back().normal},
+                 .peak_pressure = std::isinf(oracle.peak_pressure) ? Number{.why_missing = "infinite"}
+                                                                   : known(oracle.peak_pressure),
+                 .approach = known(oracle.approach)};
+  end.friction = make_friction(scene.friction, oracle.friction_force);
+  end.loads = {.twist_angle = {oracle.twist_angle},
+               .moment = {oracle.moment},
+               .moment_limit = known(oracle.moment_limit),
+               .moment_ratio = {oracle.state.moment_ratio},
+               .twist = {oracle.state.twist},
+               .force = {.values = oracle.force},
+               .displacement = {.values = oracle.displacement}};
+  end.energy.dissipated = known(oracle.dissipated);
+  end.errors = no_errors("this is the exact answer");
+  end.work.seconds.total = seconds;
+  record.memory.peak_bytes = peak_bytes();
+  record.provenance = provenance(1);
+  return record;
 }
 
 }  // namespace slipstick::convergence

@@ -5,21 +5,20 @@
 #include <gsl/gsl_version.h>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
 #include "commit.hpp"  // written by the build
 #include "convergence/system/machine.hpp"
 
 namespace slipstick::convergence {
-nlohmann::ordered_json provenance(int threads) {
-  return {{"version", SLIPSTICK_VERSION},
-          {"commit", kCommit},
-          {"compiler", fmt::format("{} {}", SLIPSTICK_COMPILER, __VERSION__)},
-          {"flags", SLIPSTICK_FLAGS},
-          {"libraries", fmt::format("Eigen {}.{}.{}, {}, GSL {}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                                    EIGEN_MINOR_VERSION, fftw_version, GSL_VERSION)},
-          {"cpu", processor_name()},
-          {"threads", threads}};
+Provenance provenance(int threads) {
+  return {.version = SLIPSTICK_VERSION,
+          .commit = kCommit,
+          .compiler = fmt::format("{} {}", SLIPSTICK_COMPILER, __VERSION__),
+          .flags = SLIPSTICK_FLAGS,
+          .libraries = fmt::format("Eigen {}.{}.{}, {}, GSL {}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                                   EIGEN_MINOR_VERSION, fftw_version, GSL_VERSION),
+          .cpu = processor_name(),
+          .threads = threads};
 }
 
 }  // namespace slipstick::convergence

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "convergence/results/solve_record.hpp"
 
 namespace slipstick::convergence {
 
-/// How a result was made: version, commit, compiler, flags, libraries, processor, threads.
-nlohmann::ordered_json provenance(int threads);
+/// Version, commit, compiler, flags and libraries of this program, and the processor that it runs on.
+Provenance provenance(int threads);
 
 }  // namespace slipstick::convergence

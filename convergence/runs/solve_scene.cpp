@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "convergence/exchange/program_solve.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/make_record.hpp"
 #include "solver/elasticity/random_rounding.hpp"
 #include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
@@ -14,11 +14,11 @@ namespace {
 
 SolvedScene solve_elsewhere(const solver::Scene& scene, const AllowedPrograms& programs) {
   ProgramAnswer answer = solve_by_program(scene, programs);
-  SolvedScene solved{.solution = std::move(answer.solution), .exact = std::move(answer.exact), .result = {}};
-  solved.result =
-      solver::within_double(scene, [&] { return solve_result(answer.scene, solved.solution, solved.exact); });
-  solved.result["method"] = "program";
-  solved.result["program"] = std::move(answer.program);
+  SolvedScene solved{.solution = std::move(answer.solution), .exact = std::move(answer.exact), .record = {}};
+  solved.record =
+      solver::within_double(scene, [&] { return make_record(answer.scene, solved.solution, solved.exact); });
+  solved.record.problem.method = "program";
+  solved.record.program = std::move(answer.program);
   return solved;
 }
 
@@ -28,11 +28,11 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   if (!scene.program.empty() && options.programs.all) return solve_elsewhere(scene, options.programs);
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
-  Json steps = Json::array();
+  std::vector<StepRecord> steps;
   solver::SolveOptions to_solver{
       .progress = options.progress, .cache = options.cache, .detail = options.detail, .ranks = options.ranks};
   if (options.resumed) {
-    steps = options.resumed->results;
+    steps = options.resumed->steps;
     to_solver.resumed = options.resumed->state;
     for (std::size_t k = 0; k < to_solver.resumed->finished; ++k) {
       solved.exact = history->advance(solver::step_of(scene, k));
@@ -41,7 +41,7 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   to_solver.on_step = [&](const solver::Solution& at) {
     const solver::KeptRounding scope(static_cast<int>(Rounding::nearest));
     solved.exact = history->advance(at.loads);
-    if (has_history(scene)) steps.push_back(step_result(scene, at, solved.exact));
+    if (has_history(scene)) steps.push_back(make_step(scene, at, solved.exact));
     if (options.on_step) options.on_step(at, solved.exact);
   };
   if (options.on_state) {
@@ -52,14 +52,12 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     solved.solution = solver::solve(scene, to_solver);
   } catch (const solver::InputError& error) {
     if (!steps.empty() && options.incomplete != nullptr) {
-      *options.incomplete = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};
-      add_steps(*options.incomplete, std::move(steps));
+      *options.incomplete = make_incomplete(scene.name, error.what(), std::move(steps));
     }
     throw;
   }
-  solved.result =
-      solver::within_double(scene, [&] { return solve_result(scene, solved.solution, solved.exact); });
-  if (has_history(scene)) add_steps(solved.result, std::move(steps));
+  solved.record = solver::within_double(
+      scene, [&] { return make_record(scene, solved.solution, solved.exact, std::move(steps)); });
   return solved;
 }
 

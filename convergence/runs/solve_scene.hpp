@@ -2,28 +2,28 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "convergence/exchange/allowed_programs.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/results/result_parts.hpp"
+#include "convergence/results/solve_record.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 
 /// The last step of a scene that was solved on its grid, by this program or another, the exact answer to it,
-/// and the result that compares the two, of a history with all steps in it.
+/// and the record that compares the two, of a history with all its steps.
 struct SolvedScene {
   solver::Solution solution;
   OracleAnswer exact;
-  Json result;
+  SolveRecord record;
 };
 
-/// The finished part of a history: where it stands, and the results of its steps.
+/// The finished steps of a history, and the state at the end of the last one.
 struct FinishedSteps {
   std::shared_ptr<const solver::HistoryState> state;
-  Json results;
+  std::vector<StepRecord> steps;
 };
 
 struct SolveSceneOptions {
@@ -34,11 +34,11 @@ struct SolveSceneOptions {
   /// How the solve rounds. The exact answer is always rounded to nearest.
   Rounding rounding = Rounding::nearest;
   /// Gets the result of a history that an InputError ends after its first step; it is thrown all the same.
-  Json* incomplete = nullptr;
+  SolveRecord* incomplete = nullptr;
   /// See solver::SolveOptions.
   std::shared_ptr<solver::SolveCache> cache = {};
-  /// Called at the end of each step that another follows, with the results so far.
-  std::function<void(const solver::HistoryState&, const Json& steps)> on_state = {};
+  /// Called at the end of each step that another follows, with the steps so far.
+  std::function<void(const solver::HistoryState&, const std::vector<StepRecord>& steps)> on_state = {};
   /// See solver::SolveOptions; null: from the first step.
   std::shared_ptr<const FinishedSteps> resumed = {};
   /// See solver::SolveOptions.

@@ -9,7 +9,7 @@
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
@@ -71,7 +71,7 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
   try {
     const bool exact = run.scene.model == solver::ModelChoice::exact;
     if (exact && spec.fields.empty() && !spec.profile)
-      return exact_result(run.scene, require_oracle(run.scene), 0.0);
+      return to_json(exact_record(run.scene, require_oracle(run.scene), 0.0));
     solved = solve_scene(
         run.scene, {.on_step = on_step,
                     .rounding = spec.rounding,
@@ -88,8 +88,8 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
   }
   if (!spec.fields.empty()) write_solution_fields(spec.fields, solved.solution, solved.exact);
   if (!spec.fields.empty() && before) write_solution_fields(step_before_file(spec.fields), *before, {});
-  if (spec.profile) solved.result["profile"] = profile_json(solved.solution, solved.exact);
-  return std::move(solved.result);
+  if (spec.profile) solved.record.profile = make_profile(solved.solution, solved.exact);
+  return to_json(solved.record);
 }
 
 }  // namespace

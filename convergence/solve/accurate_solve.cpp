@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
-#include "convergence/results/quantity.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
@@ -69,17 +68,18 @@ double path_of(const solver::Solution& solution) {
 }
 
 /// Puts the known error of the number where the answer states its uncertainty.
-void put_uncertainty(Json& result, double mesh, double path) {
-  if (!result.contains("resolved")) return;
-  Json& resolved = result["resolved"];
-  const double value = std::abs(number_at(result, resolved["number"].get<std::string>()));
+void put_uncertainty(EndRecord& end, double mesh, double path) {
+  ResolutionRecord& resolved = end.resolution;
+  const bool turns = resolved.number == "twist_angle";
+  if (!turns && resolved.number != "moment") return;
+  const double value = std::abs(turns ? end.loads.twist_angle : end.loads.moment);
   if (!std::isfinite(mesh * value)) return;
-  resolved["uncertainty"] = mesh + path;
-  resolved["absolute"] = (mesh + path) * value;
-  resolved["mesh"] = mesh * value;
-  resolved["path"] = path * value;
-  resolved["paths"][resolved["number"].get<std::string>()] = path * value;
-  resolved.erase("warning");
+  resolved.uncertainty = {mesh + path};
+  resolved.absolute = {(mesh + path) * value};
+  resolved.mesh = {mesh * value};
+  resolved.path = {path * value};
+  (turns ? resolved.paths.twist_angle : resolved.paths.moment) = resolved.path;
+  resolved.warning.clear();
 }
 
 /// As many parts as leave as little as the target allows them, or the most, and what they leave, if that
@@ -150,7 +150,7 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
                  .uncertainty = NAN,
                  .grids = {},
                  .path = 0.0};
-    made.reached = reached_error(scene, made.answer.solution, made.answer.result, of);
+    made.reached = reached_error(scene, made.answer.solution, to_json(made.answer.record), of);
     if (of == AccuracyOf::twist) {
       made.path = path_of(made.answer.solution);
     } else if (made.reached.how != "exact" && solver::depends_on_path(scene, solver::make_model(scene))) {
@@ -170,7 +170,7 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
 }
 
 Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
-  Json json{{"cells", made.answer.result["cells"]}, {"tolerance", scene.tolerance}};
+  Json json{{"cells", made.answer.record.problem.cells}, {"tolerance", scene.tolerance}};
   set_number(json, "error", made.reached.error, made.reached.why);
   json["seconds"] = seconds;
   if (!made.grids.is_null()) json["grids"] = made.grids;
@@ -251,7 +251,7 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
   found.accuracy["replaced"] = {{"cells", scene.cells}, {"tolerance", scene.tolerance}};
   if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
   found.answer = std::move(made.answer);
-  if (target.of == AccuracyOf::twist) put_uncertainty(found.answer.result, made.to_lower(), made.path);
+  if (target.of == AccuracyOf::twist) put_uncertainty(found.answer.record.end, made.to_lower(), made.path);
   return found;
 }
 

@@ -128,7 +128,7 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
                      "allowed: that build, or another file, to begin at the first step");
   }
   HistoryState state;
-  Json steps;
+  std::vector<StepRecord> steps;
   try {
     state.contact.pressure = numbers_in(file_, "pressure");
     state.contact.traction = numbers_in(file_, "traction");
@@ -150,7 +150,7 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
     state.contact.energy = json.at("energy");
     state.finished = json.at("finished");
     state.normal = normal_of(json.at("normal"));
-    steps = json.at("steps");
+    for (const Json& step : json.at("steps")) steps.push_back(step_from_json(step));
   } catch (const Json::exception&) {
     throw damaged;
   } catch (const std::out_of_range&) {
@@ -160,7 +160,9 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
       FinishedSteps{std::make_shared<const HistoryState>(std::move(state)), std::move(steps)});
 }
 
-void Checkpoint::write(const HistoryState& state, const Json& steps) const {
+void Checkpoint::write(const HistoryState& state, const std::vector<StepRecord>& steps) const {
+  Json steps_json = Json::array();
+  for (const StepRecord& step : steps) steps_json.push_back(to_json(step));
   const ContactState& contact = state.contact;
   const std::string text =
       json_text({{"format", kFormat},
@@ -173,13 +175,13 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
                  {"energy", contact.energy},
                  {"normal", normal_json(state.normal)},
                  {"has_slip", contact.slip.size() > 0},
-                 {"steps", steps}});
+                 {"steps", std::move(steps_json)}});
   std::vector<solver::Column> columns{{"pressure", contact.pressure}, {"traction", contact.traction}};
   if (contact.slip.size() > 0) columns.push_back({"slip", contact.slip});
   write_datasets(file_, columns, {{"history", text}, {"checksum", sum_of(contact, text)}});
 }
 
-void PacedCheckpoint::offer(const HistoryState& state, const Json& steps) {
+void PacedCheckpoint::offer(const HistoryState& state, const std::vector<StepRecord>& steps) {
   const auto start = Clock::now();
   if (written_ != Clock::time_point{} && kWritingPart * (start - written_) < took_) return;
   checkpoint_.write(state, steps);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "convergence/results/result_parts.hpp"
+#include "convergence/results/solve_record.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
 
@@ -25,7 +25,7 @@ class Checkpoint {
   std::shared_ptr<const FinishedSteps> read() const;
 
   /// Replaces the file by one that holds this, whole on the disk. Throws InputError where it cannot.
-  void write(const solver::HistoryState& state, const Json& steps) const;
+  void write(const solver::HistoryState& state, const std::vector<StepRecord>& steps) const;
 
  private:
   std::filesystem::path file_;
@@ -37,7 +37,7 @@ class Checkpoint {
 class PacedCheckpoint {
  public:
   explicit PacedCheckpoint(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}
-  void offer(const solver::HistoryState& state, const Json& steps);
+  void offer(const solver::HistoryState& state, const std::vector<StepRecord>& steps);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -8,8 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/orders/expected_order.hpp"
-#include "convergence/results/quantity.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/make_record.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
@@ -158,16 +157,15 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-void scale_number(Json& json, const char* key, double factor) {
-  if (json.contains(key) && json[key].is_number()) json[key] = factor * json[key].get<double>();
-}
+bool is_moment(const AccuracyQuantity& quantity) { return quantity.value == "moment"; }
 
 /// The number itself, and its form without dimension.
-void put_mean(Json& json, const AccuracyQuantity& quantity, double mean, double error) {
-  const double factor = mean / number_at(json, quantity.value);
-  scale_number(json, quantity.value == "moment" ? "moment_ratio" : "twist", factor);
-  json[quantity.value] = mean;
-  if (std::isfinite(error)) json[quantity.error] = error;
+void put_mean(EndRecord& end, const AccuracyQuantity& quantity, double mean, double error) {
+  Number& value = is_moment(quantity) ? end.loads.moment : end.loads.twist_angle;
+  Number& scaled = is_moment(quantity) ? end.loads.moment_ratio : end.loads.twist;
+  scaled.value *= mean / value;
+  value = {mean};
+  if (std::isfinite(error)) (is_moment(quantity) ? end.errors.moment : end.errors.twist) = {error};
 }
 
 }  // namespace
@@ -219,8 +217,9 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
       found.why = solution.message;
       return found;
     }
-    values.push_back(number_at(found.answer.result, quantity.value));
-    errors.push_back(number_at(found.answer.result, quantity.error));
+    const EndRecord& end = found.answer.record.end;
+    values.push_back(is_moment(quantity) ? end.loads.moment : end.loads.twist_angle);
+    errors.push_back(is_moment(quantity) ? end.errors.moment : end.errors.twist);
     found.grids.push_back({{"extent", *grid->extent}, {"value", values.back()}});
   }
   const Moments moments = moments_of(values);
@@ -232,10 +231,9 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   found.why =
       fmt::format("by what is known of such meshes, and the scatter of the {} grids whose mean it is, {:.2g}",
                   values.size(), scatter);
-  put_mean(found.answer.result, quantity, moments.mean, found.error);
-  if (found.answer.result.contains("steps")) {
-    put_mean(found.answer.result["steps"].back(), quantity, moments.mean, found.error);
-  }
+  SolveRecord& record = found.answer.record;
+  put_mean(record.end, quantity, moments.mean, found.error);
+  if (record.history) put_mean(record.history->steps.back().end, quantity, moments.mean, found.error);
   return found;
 }
 

@@ -10,7 +10,8 @@
 #include "convergence/programs/python_script.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/record_text.hpp"
+#include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/runs/worker.hpp"
@@ -71,8 +72,9 @@ int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std:
   const auto start = std::chrono::steady_clock::now();
   const Oracle oracle = require_oracle(scene);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result = exact_result(scene, oracle, seconds);
-  text << exact_text(result);
+  const SolveRecord record = exact_record(scene, oracle, seconds);
+  result = to_json(record);
+  text << solve_text(record);
   write_files(request, result,
               [&](const auto& file) { write_exact_fields(file, scene, oracle, request.processes); });
   return 0;
@@ -108,7 +110,7 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   options.resumed = finished_in(checkpoint, request);
   if (options.resumed) step = options.resumed->state->finished;
   if (request.processes.first()) {
-    options.on_state = [&](const solver::HistoryState& state, const Json& steps) {
+    options.on_state = [&](const solver::HistoryState& state, const std::vector<StepRecord>& steps) {
       paced.offer(state, steps);
     };
   }
@@ -124,31 +126,37 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
                          const std::shared_ptr<solver::SolveCache>& cache = {},
                          solver::Detail detail = solver::Detail::all) {
   std::size_t step = 0;
+  SolveRecord incomplete;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
     if (!one_file_a_step(request.fields)) return;
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
-  return solve_on(scene, request,
-                  {.progress = request.processes.first() ? show_progress : nullptr,
-                   .on_step = on_step,
-                   .incomplete = &result,
-                   .cache = cache,
-                   .detail = detail,
-                   .ranks = request.processes,
-                   .programs = allowed_programs()},
-                  step);
+  try {
+    return solve_on(scene, request,
+                    {.progress = request.processes.first() ? show_progress : nullptr,
+                     .on_step = on_step,
+                     .incomplete = &incomplete,
+                     .cache = cache,
+                     .detail = detail,
+                     .ranks = request.processes,
+                     .programs = allowed_programs()},
+                    step);
+  } catch (const solver::InputError&) {
+    if (incomplete.history) result = to_json(incomplete);
+    throw;
+  }
 }
 
 void write_answer(const SolvedScene& answer, const SolveRequest& request, std::ostream& text) {
-  text << solve_text(answer.result);
-  write_files(request, answer.result,
+  text << solve_text(answer.record);
+  write_files(request, to_json(answer.record),
               [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
 }
 
 int solve_on_grid(const solver::Scene& scene, const SolveRequest& request, std::ostream& text, Json& result) {
   const SolvedScene answer = find_on_grid(scene, request, result);
-  result = answer.result;
+  result = to_json(answer.record);
   write_answer(answer, request, text);
   return answer.solution.status == solver::Status::converged ? 0 : 1;
 }
@@ -203,7 +211,7 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
       solve_to_accuracy(scene, target, [&](const solver::Scene& chosen, solver::Detail detail) {
         return find_on_grid(chosen, request, result, cache, detail);
       });
-  result = answer.answer.result;
+  result = to_json(answer.answer.record);
   result["accuracy"] = answer.accuracy;
   write_answer(answer.answer, request, text);
   text << accuracy_text(result);
@@ -218,9 +226,12 @@ void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRe
     overrides.insert(overrides.end(), changed.begin(), changed.end());
     solver::Scene scene = solver::read_scene(request.scene, overrides);
     scene.memory_limit = request.memory_limit;
-    if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
-    return solve_scene(scene, {.cache = cache, .ranks = request.processes, .programs = allowed_programs()})
-        .result;
+    if (scene.model == solver::ModelChoice::exact) {
+      return to_json(exact_record(scene, require_oracle(scene), 0));
+    }
+    return to_json(
+        solve_scene(scene, {.cache = cache, .ranks = request.processes, .programs = allowed_programs()})
+            .record);
   });
   text << uncertainty_text(result);
 }

@@ -10,7 +10,8 @@
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/quantity.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/record_text.hpp"
+#include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accurate_solve.hpp"
@@ -126,16 +127,17 @@ void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
     column.values(0, cells, kept.columns.back().values.data());
   }
   kept.pressure = solved.solution.pressure;
-  kept.result = solved.result;
-  kept.text = convergence::solve_text(kept.result);
+  kept.result = to_json(solved.record);
+  kept.text = solve_text(solved.record);
 }
 
 void answer_exactly(slipstick_solution& kept, const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   const convergence::Oracle oracle = convergence::require_oracle(scene);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  kept.result = convergence::exact_result(scene, oracle, taken.count());
-  kept.text = convergence::exact_text(kept.result);
+  const convergence::SolveRecord record = convergence::exact_record(scene, oracle, taken.count());
+  kept.result = to_json(record);
+  kept.text = solve_text(record);
   if (!oracle.shear) return;
   convergence::GridColumns fields = convergence::exact_columns(scene, oracle);
   kept.grid = fields.grid;

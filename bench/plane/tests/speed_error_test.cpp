@@ -55,7 +55,7 @@ TEST(PlanePoint, HasTheErrorsOfItsGrids) {
   ASSERT_EQ(point["errors"]["twist"].size(), 4U);
   std::vector<std::string> overrides = bench::overrides(choice);
   overrides.push_back("load.moment_ratio=0.9");
-  const Json alone = convergence::solve_scene(solver::read_scene(kPaper, overrides)).result;
+  const Json alone = to_json(convergence::solve_scene(solver::read_scene(kPaper, overrides)).record);
   EXPECT_DOUBLE_EQ(point["errors"]["twist"][0], alone["twist_error"]);
   EXPECT_DOUBLE_EQ(point["errors"]["traction_l2"][0], alone["traction_error"]["l2"]);
   double sum = 0.0;

@@ -1,12 +1,11 @@
+#include "convergence/results/solution_fields.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <utility>
 
 #include "convergence/oracle/errors.hpp"
-#include "convergence/results/exact_result.hpp"
-#include "convergence/results/result.hpp"
-#include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 
@@ -62,27 +61,24 @@ void write_solution_fields(const std::filesystem::path& file, const solver::Solu
   solver::write_fields(file, solution.grid, solution_columns(solution, exact), solution.pressure);
 }
 
-Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) {
-  if (!answer.oracle || !answer.oracle->shear) return Json::array();
+std::vector<ProfilePoint> make_profile(const solver::Solution& solution, const OracleAnswer& answer) {
+  std::vector<ProfilePoint> points;
+  if (!answer.oracle || !answer.oracle->shear) return points;
   const Oracle& oracle = *answer.oracle;
   const ExactFields exact = exact_fields(oracle, solution.grid);
   const double unit = 1.0 / oracle.reference_bound;
   const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
   const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
   const solver::Grid& grid = solution.grid;
-  Json rows = Json::array();
   const auto add = [&](solver::Index i, solver::Index j) {
     const solver::Index cell = i * grid.n2 + j;
     const double radius = std::hypot(grid.x1(i), grid.x2(j)) / oracle.contact_radius;
     if (radius > 1.0) return;
-    rows.push_back({{"radius", radius},
-                    {"value", value[cell]},
-                    {"exact", exact_value[cell]},
-                    {"error", value[cell] - exact_value[cell]}});
+    points.push_back({radius, value[cell], exact_value[cell], value[cell] - exact_value[cell]});
   };
   for (solver::Index i = grid.n1 / 2; i < grid.n1; ++i) add(i, grid.n2 / 2);
   for (solver::Index i = grid.n1 / 2 + 1; i < grid.n1; ++i) add(i, i);
-  return rows;
+  return points;
 }
 
 GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, const solver::Ranks& ranks) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "convergence/results/solve_record.hpp"
+
+namespace slipstick::convergence {
+
+/// The answer of a solve in a few lines for a person.
+std::string solve_text(const SolveRecord& record);
+
+/// The law of a result's key friction_law; empty: Coulomb's.
+solver::FrictionKind friction_law_of(const std::string& word);
+
+/// The angle between slip and traction that the law prescribes, in words.
+std::string right_direction_text(solver::FrictionKind law);
+
+}  // namespace slipstick::convergence
