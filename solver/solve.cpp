@@ -26,8 +26,6 @@
 namespace slipstick::solver {
 namespace {
 
-using Progress = std::function<void(int iteration, double change)>;
-
 using Eigen::ArrayXd;
 
 /// Rounding of a sum over a million cells, relative to the sum of sizes.
