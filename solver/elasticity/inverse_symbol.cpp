@@ -6,7 +6,7 @@
 
 #include "solver/elasticity/mirrored_inverse_symbol.hpp"
 #include "solver/elasticity/symbol_table.hpp"
-#include "solver/fft/plane_transform.hpp"
+#include "solver/fft/periodic_transform.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -58,7 +58,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
         periodic_(padded(grid, options.at_edge)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, law, tangential)),
-        columns_(PlaneTransform::own_columns(shape(grid, periodic_, tangential))),
+        columns_(PeriodicTransform::own_columns(shape(grid, periodic_, tangential))),
         table_(periodic_, law, tangential ? 3 : 1, frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.n1) * static_cast<double>(periodic_.n2))),
         transform_(shape(grid, periodic_, tangential), options.threads, options.memory) {}
@@ -74,8 +74,8 @@ class PeriodicInverseSymbol final : public InverseSymbol {
       });
     };
     each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data()); });
-    transform_.through_columns(fields_, [&](int, const PlaneColumns& columns) {
-      using Whole = std::integral_constant<Index, PlaneTransform::kColumns>;
+    transform_.through_columns(fields_, fields_, [&](int, const PeriodicTransform::Columns& columns) {
+      using Whole = std::integral_constant<Index, PeriodicTransform::kColumns>;
       columns.count == Whole::value ? multiply(columns, Whole()) : multiply(columns, columns.count);
     });
     each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data()); });
@@ -84,7 +84,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   std::array<double, 2> diagonal() const override { return diagonal_; }
 
  private:
-  static PlaneShape shape(const Grid& grid, const Grid& periodic, bool tangential) {
+  static PeriodicTransform::Shape shape(const Grid& grid, const Grid& periodic, bool tangential) {
     return {.n1 = periodic.n1,
             .n2 = periodic.n2,
             .fields = tangential ? 2 : 1,
@@ -94,7 +94,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
 
   /// Where row i of a field is transformed: where it is, if it needs no zeros.
   double* row(int thread, double* values) {
-    const bool fits = grid_.n2 == periodic_.n2 && PlaneTransform::is_aligned(values);
+    const bool fits = grid_.n2 == periodic_.n2 && PeriodicTransform::is_aligned(values);
     return fits ? values : transform_.own_row(thread);
   }
 
@@ -116,7 +116,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   }
 
   template <typename Count>
-  void multiply(const PlaneColumns& columns, Count count) {
+  void multiply(const PeriodicTransform::Columns& columns, Count count) {
     const Index first = columns.first - columns_.first;
     for (Index k = 0; k < periodic_.n1; ++k) {
       const bool negative = 2 * k > periodic_.n1;
@@ -137,7 +137,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   std::array<double, 2> diagonal_;
   IndexRange columns_;  ///< of this rank
   SymbolTable table_;
-  PlaneTransform transform_;
+  PeriodicTransform transform_;
 };
 
 }  // namespace

@@ -19,13 +19,12 @@ Grid mirrored(const Grid& grid) {
 /// Where sample i of t goes: even ones forwards, then odd ones backwards.
 Index reordered(Index i, Index t) { return i % 2 == 0 ? i / 2 : t - 1 - i / 2; }
 
-PlaneShape plane_of(const Grid& grid, bool tangential, bool symmetric) {
+PeriodicTransform::Shape plane_of(const Grid& grid, bool two_fields) {
   return {transform_length(grid.n1),
           transform_length(grid.n2),
-          tangential ? 2 : 1,
+          two_fields ? 2 : 1,
           grid.n1,
           reordered,
-          symmetric,
           grid.ranks};
 }
 
@@ -40,9 +39,7 @@ std::vector<Index> frequencies(Index t, const IndexRange& columns) {
 /// With mirror images about the diagonal p22 is the transpose of p11.
 std::size_t entries_in_use(bool tangential, bool symmetric) { return tangential ? (symmetric ? 2 : 3) : 1; }
 
-/// Values in the scratch memory, four coefficients for each field and a complex row, and of all twiddle
-/// factors.
-Index coefficient_size(Index half, bool two_fields) { return (two_fields ? 10 : 6) * half; }
+/// Values of all twiddle factors.
 Index twiddle_size(Index t1, Index half) { return 2 * (t1 / 2 + 1 + half); }
 
 /// n samples, those at even and at odd places times a sign each, padded to t.
@@ -126,12 +123,20 @@ void mix(Count count, const double* __restrict p11, const double* __restrict p12
   }
 }
 
-/// p11 x - p12 y, y every step-th value. The first p12 is zero, and there need be no first y.
-void mix_with_other_half(Index count, const double* __restrict p11, const double* __restrict p12,
-                         const double* __restrict x, const double* __restrict y, Index step,
-                         double* __restrict out) {
-  out[0] = p11[0] * x[0];
-  for (Index k = 1; k < count; ++k) out[k] = p11[k] * x[k] - p12[k] * y[k * step];
+/// p11 x - p12 y, y every step-th value. At the frequency 0 p12 is zero, and there may be no y.
+template <typename Count>
+void mix_with_other_half(Count count, bool from_zero, const double* __restrict p11,
+                         const double* __restrict p12, const double* __restrict x, const double* __restrict y,
+                         Index step, double* __restrict out) {
+  if (from_zero) out[0] = p11[0] * x[0];
+  for (Index k = from_zero ? 1 : 0; k < count; ++k) out[k] = p11[k] * x[k] - p12[k] * y[k * step];
+}
+
+/// work(count), which the compiler knows where the columns fill a cache line.
+template <typename Work>
+void with_count(Index count, const Work& work) {
+  using Whole = std::integral_constant<Index, PeriodicTransform::kColumns>;
+  count == Whole::value ? work(Whole()) : work(count);
 }
 
 }  // namespace
@@ -145,12 +150,11 @@ MirroredInverseSymbol::MirroredInverseSymbol(const Grid& grid, bool tangential, 
       t2_(transform_length(grid.n2)),
       half_(t2_ / 2 + 1),
       diagonal_(mean_inverse_symbol(mirrored(grid), law, tangential)),
-      columns_(PlaneTransform::own_columns(plane_of(grid, tangential, symmetric_))),
+      columns_(PeriodicTransform::own_columns(plane_of(grid, tangential && !symmetric_))),
       table_(mirrored(grid), law, entries_in_use(tangential, options.diagonal), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(plane_of(grid, tangential, symmetric_), options.threads),
-      scratch_(coefficient_size(half_, tangential_ && !symmetric_)),
-      coefficients_(static_cast<std::size_t>(options.threads * scratch_)),
+      transform_(plane_of(grid, tangential && !symmetric_), options.threads),
+      spectrum_(symmetric_ ? count(t1_ * transform_.row_stride()) : 0),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
   fill_twiddles();
 }
@@ -179,25 +183,23 @@ void MirroredInverseSymbol::apply(std::span<double> field) {
   };
   each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data() + f * cells); });
   if (symmetric_) {
-    transform_.clear_others(0);
-    transform_.forward_columns(0);
-    multiply_symmetric();
-    transform_.backward_columns(1);
+    transform_.through_columns(1, 0, [&](int, const Columns& columns) {
+      with_count(columns.count, [&](auto count) { keep_spectrum(columns, count); });
+    });
+    transform_.through_columns(0, 1, [&](int, const Columns& columns) {
+      with_count(columns.count, [&](auto count) { multiply_spectrum(columns, count); });
+    });
   } else {
-    transform_.through_columns(transformed, [&](int thread, const PlaneColumns& columns) {
-      using Whole = std::integral_constant<Index, PlaneTransform::kColumns>;
-      columns.count == Whole::value ? multiply(thread, columns, Whole())
-                                    : multiply(thread, columns, columns.count);
+    transform_.through_columns(transformed, transformed, [&](int, const Columns& columns) {
+      with_count(columns.count, [&](auto count) { multiply(columns, count); });
     });
   }
-  const Index result = symmetric_ ? 1 : 0;
-  each_row([&](int thread, Index f, Index i) { store(thread, result + f, i, field.data() + f * cells); });
+  each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data() + f * cells); });
   if (!symmetric_) return;
   in_parts(threads, grid_.n1,
            [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
 }
 
-/// Sample i of a field, and forward.
 void MirroredInverseSymbol::load(int thread, Index f, Index i, const double* values) {
   const auto [even, odd] = signs(f, i);
   reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.own_row(thread));
@@ -205,7 +207,7 @@ void MirroredInverseSymbol::load(int thread, Index f, Index i, const double* val
 }
 
 void MirroredInverseSymbol::store(int thread, Index f, Index i, double* values) {
-  const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
+  const auto [even, odd] = signs(f, i);
   transform_.backward_sample(transform_.own_row(thread), f, i);
   restore(transform_.own_row(thread), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
@@ -218,11 +220,6 @@ std::array<double, 2> MirroredInverseSymbol::signs(Index f, Index i) const {
   return {sign, sign};
 }
 
-auto MirroredInverseSymbol::coefficients(int thread, Index f) -> Coefficients {
-  double* const first = scratch(thread) + 4 * f * half_;
-  return {first, first + half_, first + 2 * half_, first + 3 * half_};
-}
-
 /// cos and sin at row k1 and in some columns.
 Twiddles MirroredInverseSymbol::twiddles(Index k1, Index first_column) const {
   const double* const c1 = twiddles_.data();
@@ -231,107 +228,101 @@ Twiddles MirroredInverseSymbol::twiddles(Index k1, Index first_column) const {
 }
 
 template <typename Count>
-void MirroredInverseSymbol::separate(int thread, const PlaneColumns& columns, Count count, Index f,
-                                     Index k1) {
-  const Coefficients to = coefficients(thread, f);
+void MirroredInverseSymbol::separate(const Columns& columns, Count count, Index f, Index k1,
+                                     Coefficients& to) const {
   separate_rows(count, twiddles(k1, columns.first), columns.row(f, k1),
-                columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc, to.cs, to.sc, to.ss);
+                columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc.data(), to.cs.data(), to.sc.data(),
+                to.ss.data());
+}
+
+/// Rows 0 and t1/2 are their own partners, so that only one of two results is kept.
+template <typename Count>
+void MirroredInverseSymbol::join(const Coefficients& from, const Columns& columns, Count count, Index f,
+                                 Index k1) const {
+  std::array<double, static_cast<std::size_t>(2 * kColumns)> dummy_row;
+  const bool own_partner = k1 == 0 || 2 * k1 == t1_;
+  join_rows(count, twiddles(k1, columns.first), from.cc.data(), from.cs.data(), from.sc.data(),
+            from.ss.data(), columns.row(f, k1), own_partner ? dummy_row.data() : columns.row(f, t1_ - k1));
 }
 
 template <typename Count>
-void MirroredInverseSymbol::join(int thread, const Coefficients& from, const PlaneColumns& columns,
-                                 Count count, Index f, Index k1) {
-  // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
-  const bool alone = k1 == 0 || 2 * k1 == t1_;
-  double* const unused = scratch(thread) + scratch_ - 2 * half_;
-  join_rows(count, twiddles(k1, columns.first), from.cc, from.cs, from.sc, from.ss, columns.row(f, k1),
-            alone ? unused : columns.row(f, t1_ - k1));
-}
-
-template <typename Work>
-void MirroredInverseSymbol::for_row_pairs(const Work& work) {
-  in_parts(transform_.threads(), t1_ / 2 + 1, [&](int thread, Index first, Index last) {
-    for (Index k1 = first; k1 < last; ++k1) work(thread, k1);
-  });
-}
-
-template <typename Count>
-void MirroredInverseSymbol::multiply(int thread, const PlaneColumns& columns, Count count) {
+void MirroredInverseSymbol::multiply(const Columns& columns, Count count) const {
   const Index fields = tangential_ ? 2 : 1;
+  std::array<Coefficients, 2> x;
   for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
-    for (Index f = 0; f < fields; ++f) separate(thread, columns, count, f, k1);
-    multiply_rows(thread, columns, count, k1);
-    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), columns, count, f, k1);
+    for (Index f = 0; f < fields; ++f) separate(columns, count, f, k1, x[static_cast<std::size_t>(f)]);
+    multiply_rows(x, columns, count, k1);
+    for (Index f = 0; f < fields; ++f) join(x[static_cast<std::size_t>(f)], columns, count, f, k1);
   }
 }
 
-/// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
-/// q1's cs has the frequencies of q2's sc, and so on.
+/// q1 is odd in x2 and q2 in x1. Cosines have the frequency k, sines t - k, and alternating signs make that k
+/// again: so cs of q1 belongs to the same frequencies as sc of q2, and so on.
 template <typename Count>
-void MirroredInverseSymbol::multiply_rows(int thread, const PlaneColumns& columns, Count count, Index k1) {
+void MirroredInverseSymbol::multiply_rows(std::array<Coefficients, 2>& fields, const Columns& columns,
+                                          Count count, Index k1) const {
   const Index first = columns.first - columns_.first;
-  const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1) + first; };
-  const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1) + first; };
-  const Index sines = columns_.count();
-  const Coefficients x = coefficients(thread, 0);
+  const Index sines = first + columns_.count();
+  auto& [x, y] = fields;
   if (!tangential_) {
-    scale(count, low(SymbolEntry::p11), x.cc);
-    scale(count, low(SymbolEntry::p11) + sines, x.cs);
-    scale(count, high(SymbolEntry::p11), x.sc);
-    scale(count, high(SymbolEntry::p11) + sines, x.ss);
+    const double* const low = table_.row(SymbolEntry::p11, k1);
+    const double* const high = table_.row(SymbolEntry::p11, t1_ - k1);
+    scale(count, low + first, x.cc.data());
+    scale(count, low + sines, x.cs.data());
+    scale(count, high + first, x.sc.data());
+    scale(count, high + sines, x.ss.data());
     return;
   }
-  const auto multiply_pair = [&](const auto& row, Index column, double* x1, double* x2) {
-    mix(count, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
-        x1, x2);
+  const auto mix_at = [&](Index f1, Index column, auto& x1, auto& x2) {
+    mix(count, table_.row(SymbolEntry::p11, f1) + column, table_.row(SymbolEntry::p12, f1) + column,
+        table_.row(SymbolEntry::p22, f1) + column, x1.data(), x2.data());
   };
-  const Coefficients y = coefficients(thread, 1);
-  multiply_pair(low, 0, x.cs, y.sc);
-  multiply_pair(low, sines, x.cc, y.ss);
-  multiply_pair(high, 0, x.ss, y.cc);
-  multiply_pair(high, sines, x.sc, y.cs);
+  mix_at(k1, first, x.cs, y.sc);
+  mix_at(k1, sines, x.cc, y.ss);
+  mix_at(t1_ - k1, first, x.ss, y.cc);
+  mix_at(t1_ - k1, sines, x.sc, y.cs);
 }
 
-/// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1): all of those are made first, in
-/// place of the transform.
-void MirroredInverseSymbol::multiply_symmetric() {
-  for_row_pairs([&](int thread, Index k1) {
-    const Coefficients x = coefficients(thread, 0);
-    separate(thread, transform_.all_columns(), half_, 0, k1);
-    double* const low = transform_.row(0, k1);
-    std::copy_n(x.cs, half_, low);
-    std::copy_n(x.cc, half_, low + half_);
-    if (k1 == 0 || 2 * k1 == t1_) return;
-    double* const high = transform_.row(0, t1_ - k1);
-    std::copy_n(x.ss, half_, high);
-    std::copy_n(x.sc, half_, high + half_);
-  });
-  for_row_pairs([&](int thread, Index k1) {
-    multiply_symmetric_rows(thread, k1);
-    join(thread, coefficients(thread, 0), transform_.all_columns(), half_, 1, k1);
-  });
-}
-
-/// Rows and columns hold the frequencies k, and t - k after them (rows: before the end).
-void MirroredInverseSymbol::multiply_symmetric_rows(int thread, Index k1) {
-  const Coefficients to = coefficients(thread, 0);
-  const Index step = transform_.row_stride();
-  const auto mix_row = [&](Index f1, Index column, Index other_column, double* out) {
-    const double* const other =
-        column == 0 ? transform_.row(0, 0) + other_column : transform_.row(0, t1_) + other_column;
-    mix_with_other_half(half_, table_.row(SymbolEntry::p11, f1) + column,
-                        table_.row(SymbolEntry::p12, f1) + column, transform_.row(0, f1) + column, other,
-                        column == 0 ? step : -step, out);
+/// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1), so that all of q1's are stored
+/// first.
+template <typename Count>
+void MirroredInverseSymbol::keep_spectrum(const Columns& columns, Count count) {
+  const auto keep = [&](const Coefficients::Values& low, const Coefficients::Values& high, Index k1) {
+    double* const row = spectrum_.data() + k1 * transform_.row_stride() + columns.first;
+    std::copy_n(low.begin(), static_cast<Index>(count), row);
+    std::copy_n(high.begin(), static_cast<Index>(count), row + half_);
   };
-  mix_row(k1, 0, k1, to.cs);
-  mix_row(k1, half_, k1, to.cc);
-  if (k1 == 0) {  // no frequency t1 along x1, in which q1 is even
-    std::fill_n(to.ss, half_, 0.0);
-    std::fill_n(to.sc, half_, 0.0);
-    return;
+  Coefficients x;
+  for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
+    separate(columns, count, 0, k1, x);
+    keep(x.cs, x.cc, k1);
+    if (k1 != 0 && 2 * k1 != t1_) keep(x.ss, x.sc, t1_ - k1);
   }
-  mix_row(t1_ - k1, 0, half_ + k1, to.ss);
-  mix_row(t1_ - k1, half_, half_ + k1, to.sc);
+}
+
+/// Rows and columns of spectrum_ hold the frequencies k, then t - k (rows: at t1 - k).
+template <typename Count>
+void MirroredInverseSymbol::multiply_spectrum(const Columns& columns, Count count) const {
+  const Index first = columns.first;
+  const Index stride = transform_.row_stride();
+  const auto mix_row = [&](Index f1, bool sines, Index other_column, Coefficients::Values& out) {
+    const Index column = first + (sines ? half_ : 0);
+    const Index step = sines ? -stride : stride;
+    const double* const other = spectrum(sines ? t1_ : 0) + other_column + first * step;
+    mix_with_other_half(count, first == 0, table_.row(SymbolEntry::p11, f1) + column,
+                        table_.row(SymbolEntry::p12, f1) + column, spectrum(f1) + column, other, step,
+                        out.data());
+  };
+  Coefficients to{};
+  for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
+    mix_row(k1, false, k1, to.cs);
+    mix_row(k1, true, k1, to.cc);
+    if (k1 > 0) {  // q1 is even in x1: no frequency t1
+      mix_row(t1_ - k1, false, half_ + k1, to.ss);
+      mix_row(t1_ - k1, true, half_ + k1, to.sc);
+    }
+    join(to, columns, count, 0, k1);
+  }
 }
 
 /// The second component, from these rows of the first.

@@ -60,7 +60,7 @@ class FftwBuffer {
   std::unique_ptr<double, Free> data_;
 };
 
-/// Throws std::runtime_error where FFTW made no plan.
+/// An owned plan. Throws std::runtime_error if FFTW made none.
 class FftwPlan {
  public:
   FftwPlan() = default;
@@ -74,6 +74,14 @@ class FftwPlan {
     void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
   };
   std::unique_ptr<std::remove_pointer_t<fftw_plan>, Destroy> plan_;
+};
+
+/// The plans of a two-dimensional transform.
+struct PlanePlans {
+  FftwPlan row_forward;
+  FftwPlan row_backward;
+  FftwPlan column_forward;
+  FftwPlan column_backward;
 };
 
 }  // namespace slipstick::solver

@@ -15,8 +15,8 @@ std::complex<double> times_conjugate(std::complex<double> a, std::complex<double
   return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
 }
 
-/// Neighbouring columns lie pages apart, where the processor does not look ahead: they are prefetched
-/// this many columns before their turn.
+/// Neighbouring columns lie pages apart, so that the processor does not prefetch them: columns to prefetch
+/// ahead.
 constexpr Index kAhead = 12;
 
 /// exp(-i pi j/m), 0 <= j < n.
@@ -31,34 +31,28 @@ std::vector<std::complex<double>> twiddles(Index n, Index m) {
 
 }  // namespace
 
+/// The stride is an odd number of groups: numbers a power of two apart would compete for one cache set.
+PaddedTransform::Axis::Axis(Index cells)
+    : m(half_length(cells)), stride(((m + kRows - 1) / kRows | 1) * kRows), twiddle(twiddles(cells, m)) {}
+
 PaddedTransform::PaddedTransform(const Grid& grid, std::size_t fields, int threads)
     : grid_(grid),
       fields_(fields),
       threads_(threads),
-      m1_(half_length(grid.n1)),
-      m2_(half_length(grid.n2)),
-      stride1_(stride(m1_)),
-      stride2_(stride(m2_)),
-      twiddle1_(twiddles(grid.n1, m1_)),
-      twiddle2_(twiddles(grid.n2, m2_)),
+      axis1_(grid.n1),
+      axis2_(grid.n2),
       zero_row_(count(grid.n2)),
-      several_(grid.ranks.several()),
       shared_(shared_matrix(grid)),
-      own_groups_(own_groups(grid)),
-      field_size_(field_size(grid, columns(), stride1_)),
-      column_step_(several_ ? kRows : stride1_),
-      group_step_(several_ ? shared_.row_step() / 2 : kRows),
-      columns_(2 * fields * field_size_) {
-  const Index size = scratch_size(grid, fields, stride1_, stride2_);
-  for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
+      layout_(layout()),
+      columns_(2 * fields * layout_.field) {
+  for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(scratch_size()));
   const auto plan = [&](Index length, Index out, int direction) {
     auto* const start = scratch_.front().complex();
     return FftwPlan(plan_transform(static_cast<int>(length), start, start + out, direction));
   };
-  row_forward_ = plan(m2_, kRows * stride2_, FFTW_FORWARD);
-  row_backward_ = plan(m2_, kRows * stride2_, FFTW_BACKWARD);
-  column_forward_ = plan(m1_, stride1_, FFTW_FORWARD);
-  column_backward_ = plan(m1_, stride1_, FFTW_BACKWARD);
+  plans_ = {plan(axis2_.m, kRows * axis2_.stride, FFTW_FORWARD),
+            plan(axis2_.m, kRows * axis2_.stride, FFTW_BACKWARD), plan(axis1_.m, axis1_.stride, FFTW_FORWARD),
+            plan(axis1_.m, axis1_.stride, FFTW_BACKWARD)};
 }
 
 void PaddedTransform::execute(const FftwPlan& plan, Complex* in, Complex* out) {
@@ -67,21 +61,20 @@ void PaddedTransform::execute(const FftwPlan& plan, Complex* in, Complex* out) {
 }
 
 auto PaddedTransform::column(std::size_t field, Index column) -> Complex* {
-  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * stride1_;
+  return as_complex(columns_) + static_cast<Index>(field * layout_.field) + column * axis1_.stride;
 }
 
-/// Inlined: the innermost loops of separate() and join() ask for it twice a column.
+/// Inlined: the innermost loops of separate() and join() call it twice a column.
 inline auto PaddedTransform::rows_of(std::size_t field, Index column, Index group) -> Complex* {
-  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_step_ +
-         (group - own_groups_.first) * group_step_;
+  return as_complex(columns_) + static_cast<Index>(field * layout_.field) + column * layout_.column +
+         (group - layout_.first_group) * layout_.group;
 }
 
-std::size_t PaddedTransform::field_size(const Grid& grid, Index columns, Index stride1) {
-  if (!grid.ranks.several()) return count(columns * stride1);
-  return count(shared_matrix(grid).size() / 2);
+auto PaddedTransform::layout() const -> Layout {
+  if (!grid_.ranks.several()) return {count(columns() * axis1_.stride), axis1_.stride, kRows, 0};
+  return {count(shared_.size() / 2), kRows, shared_.row_step() / 2, own_groups(grid_).first};
 }
 
-/// A group of rows in a column is an entry.
 RankTranspose PaddedTransform::shared_matrix(const Grid& grid) {
   static_assert(kRowsOfBand % kRows == 0);
   return {grid.ranks, (grid.n1 + kRows - 1) / kRows, rows_of_rank(grid.n1, grid.ranks) / kRows,
@@ -97,19 +90,19 @@ IndexRange PaddedTransform::own_columns(const Grid& grid) { return shared_matrix
 
 auto PaddedTransform::spectrum_of(int thread) -> Spectrum {
   Complex* const start = scratch(thread);
-  return {{start, start + 2 * stride1_}, {start + stride1_, start + 3 * stride1_}};
+  return {{start, start + 2 * axis1_.stride}, {start + axis1_.stride, start + 3 * axis1_.stride}};
 }
 
-/// work(thread, field, first row, where the field starts among its values) for all groups of kRows rows that
-/// this rank has.
+/// work(thread, field, first row, index of the field's first value) for all groups of rows of this rank.
 template <typename Work>
 void PaddedTransform::in_groups(std::size_t values, const Work& work) {
-  const Index groups = own_groups_.count();
+  const IndexRange own = own_groups(grid_);
+  const Index groups = own.count();
   const Index fields = static_cast<Index>(values) / grid_.cells();
   in_parts(threads_, fields * groups, [&](int thread, Index first, Index last) {
     for (Index group = first; group < last; ++group) {
       const Index field = group / groups;
-      work(thread, count(field), (own_groups_.first + group % groups) * kRows, field * grid_.cells());
+      work(thread, count(field), (own.first + group % groups) * kRows, field * grid_.cells());
     }
   });
 }
@@ -130,21 +123,21 @@ void PaddedTransform::backward_rows(std::span<double> fields) {
 void PaddedTransform::forward_group(int thread, std::size_t field, Index first_row, const double* values) {
   const Index n2 = grid_.n2;
   Complex* const halves = scratch(thread);
-  Complex* const spectra = halves + kRows * stride2_;
+  Complex* const spectra = halves + kRows * axis2_.stride;
   const auto row = [&](Index i) { return i < grid_.n1 ? values + i * n2 : zero_row_.data(); };
   for (Index r = 0; r < kRows; r += 2) {
     const double* const real = row(first_row + r);
     const double* const imaginary = row(first_row + r + 1);
-    Complex* const even = halves + r * stride2_;
-    Complex* const odd = even + stride2_;
+    Complex* const even = halves + r * axis2_.stride;
+    Complex* const odd = even + axis2_.stride;
     for (Index j = 0; j < n2; ++j) {
       even[j] = {real[j], imaginary[j]};
-      odd[j] = times(even[j], twiddle2_[count(j)]);
+      odd[j] = times(even[j], axis2_.twiddle[count(j)]);
     }
-    std::fill(even + n2, even + m2_, Complex());
-    std::fill(odd + n2, odd + m2_, Complex());
+    std::fill(even + n2, even + axis2_.m, Complex());
+    std::fill(odd + n2, odd + axis2_.m, Complex());
     for (const Index half : {r, r + 1}) {
-      execute(row_forward_, halves + half * stride2_, spectra + half * stride2_);
+      execute(plans_.row_forward, halves + half * axis2_.stride, spectra + half * axis2_.stride);
     }
   }
   separate(field, first_row, spectra);
@@ -159,21 +152,21 @@ void PaddedTransform::separate(std::size_t field, Index first_row, const Complex
     Complex* const out = rows_of(field, to, group);
     __builtin_prefetch(rows_of(field, std::min(to + kAhead, columns() - 1), group), 1);
     for (Index r = 0; r < kRows; r += 2) {
-      const Complex z = pairs[r * stride2_ + k];
-      const Complex y = pairs[r * stride2_ + mirrored];
+      const Complex z = pairs[r * axis2_.stride + k];
+      const Complex y = pairs[r * axis2_.stride + mirrored];
       out[r] = {half * (z.real() + y.real()), half * (z.imag() - y.imag())};
       out[r + 1] = {half * (z.imag() + y.imag()), half * (y.real() - z.real())};
     }
   };
-  const Index evens = m2_ / 2 + 1;
+  const Index evens = axis2_.m / 2 + 1;
   separate_column(0, 0, 0, spectra);
-  for (Index k = 1; k < evens; ++k) separate_column(k, k, m2_ - k, spectra);
+  for (Index k = 1; k < evens; ++k) separate_column(k, k, axis2_.m - k, spectra);
   for (Index k = 0; evens + k < columns(); ++k) {
-    separate_column(evens + k, k, m2_ - 1 - k, spectra + stride2_);
+    separate_column(evens + k, k, axis2_.m - 1 - k, spectra + axis2_.stride);
   }
 }
 
-/// The contrary of separate().
+/// The inverse of separate().
 void PaddedTransform::join(std::size_t field, Index first_row, Complex* spectra) {
   const Index group = first_row / kRows;
   const auto join_column = [&](Index from, Index k, Index mirrored, Complex* pairs) {
@@ -182,43 +175,44 @@ void PaddedTransform::join(std::size_t field, Index first_row, Complex* spectra)
     for (Index r = 0; r < kRows; r += 2) {
       const Complex x = in[r];
       const Complex y = in[r + 1];
-      pairs[r * stride2_ + mirrored] = {x.real() + y.imag(), y.real() - x.imag()};
-      pairs[r * stride2_ + k] = {x.real() - y.imag(), y.real() + x.imag()};
+      pairs[r * axis2_.stride + mirrored] = {x.real() + y.imag(), y.real() - x.imag()};
+      pairs[r * axis2_.stride + k] = {x.real() - y.imag(), y.real() + x.imag()};
     }
   };
-  const Index evens = m2_ / 2 + 1;
+  const Index evens = axis2_.m / 2 + 1;
   join_column(0, 0, 0, spectra);
-  for (Index k = 1; k < evens; ++k) join_column(k, k, m2_ - k, spectra);
-  for (Index k = 0; evens + k < columns(); ++k) join_column(evens + k, k, m2_ - 1 - k, spectra + stride2_);
+  for (Index k = 1; k < evens; ++k) join_column(k, k, axis2_.m - k, spectra);
+  for (Index k = 0; evens + k < columns(); ++k)
+    join_column(evens + k, k, axis2_.m - 1 - k, spectra + axis2_.stride);
 }
 
 void PaddedTransform::backward_group(int thread, std::size_t field, Index first_row, double* values) {
   const Index n2 = grid_.n2;
   Complex* const spectra = scratch(thread);
-  Complex* const halves = spectra + kRows * stride2_;
+  Complex* const halves = spectra + kRows * axis2_.stride;
   join(field, first_row, spectra);
   for (Index r = 0; r < kRows && first_row + r < grid_.n1; r += 2) {
     for (const Index half : {r, r + 1}) {
-      execute(row_backward_, spectra + half * stride2_, halves + half * stride2_);
+      execute(plans_.row_backward, spectra + half * axis2_.stride, halves + half * axis2_.stride);
     }
-    const Complex* const even = halves + r * stride2_;
-    const Complex* const odd = even + stride2_;
+    const Complex* const even = halves + r * axis2_.stride;
+    const Complex* const odd = even + axis2_.stride;
     double* const real = values + (first_row + r) * n2;
     const bool paired = first_row + r + 1 < grid_.n1;
     for (Index j = 0; j < n2; ++j) {
-      const Complex value = even[j] + times_conjugate(odd[j], twiddle2_[count(j)]);
+      const Complex value = even[j] + times_conjugate(odd[j], axis2_.twiddle[count(j)]);
       real[j] = value.real();
       if (paired) real[n2 + j] = value.imag();
     }
   }
 }
 
-/// Where a column is carried: on several ranks, whose groups of rows lie apart, in a thread's memory.
+/// A column as contiguous numbers: on several ranks, whose groups of rows lie apart, a copy.
 auto PaddedTransform::gathered(int thread, std::size_t field, Index column_index) -> Complex* {
-  if (!several_) return column(field, column_index);
+  if (!grid_.ranks.several()) return column(field, column_index);
   Complex* const values = padded(thread);
   shared_.each_row(reals(field), column_index, [&](Index group, const double* from) {
-    __builtin_prefetch(from + kAhead * 2 * group_step_);
+    __builtin_prefetch(from + kAhead * 2 * layout_.group);
     std::copy_n(reinterpret_cast<const Complex*>(from), kRows, values + group * kRows);
   });
   return values;
@@ -228,25 +222,25 @@ void PaddedTransform::forward_column(int thread, std::size_t field, Index column
   const Spectrum spectrum = spectrum_of(thread);
   Complex* const values = gathered(thread, field, column_index);
   Complex* const odd = turned(thread);
-  // A row without another to go with it leaves rounding where that would stand.
-  std::fill(values + grid_.n1, values + std::max(m1_, groups() * kRows), Complex());
-  for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], twiddle1_[count(i)]);
-  std::fill(odd + grid_.n1, odd + m1_, Complex());
-  execute(column_forward_, values, spectrum.even[field]);
-  execute(column_forward_, odd, spectrum.odd[field]);
+  // The imaginary part of an odd count's last row is rounding, not zero.
+  std::fill(values + grid_.n1, values + std::max(axis1_.m, groups() * kRows), Complex());
+  for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], axis1_.twiddle[count(i)]);
+  std::fill(odd + grid_.n1, odd + axis1_.m, Complex());
+  execute(plans_.column_forward, values, spectrum.even[field]);
+  execute(plans_.column_forward, odd, spectrum.odd[field]);
 }
 
 void PaddedTransform::backward_column(int thread, std::size_t field, Index column_index) {
   const Spectrum spectrum = spectrum_of(thread);
-  Complex* const even = several_ ? padded(thread) : column(field, column_index);
+  Complex* const even = grid_.ranks.several() ? padded(thread) : column(field, column_index);
   Complex* const odd = turned(thread);
-  execute(column_backward_, spectrum.even[field], even);
-  execute(column_backward_, spectrum.odd[field], odd);
-  for (Index i = 0; i < grid_.n1; ++i) even[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
-  std::fill(even + grid_.n1, even + groups() * kRows, Complex());  // a row without another to go with it
-  if (!several_) return;
+  execute(plans_.column_backward, spectrum.even[field], even);
+  execute(plans_.column_backward, spectrum.odd[field], odd);
+  for (Index i = 0; i < grid_.n1; ++i) even[i] += times_conjugate(odd[i], axis1_.twiddle[count(i)]);
+  std::fill(even + grid_.n1, even + groups() * kRows, Complex());
+  if (!grid_.ranks.several()) return;
   shared_.each_row(reals(field), column_index, [&](Index group, double* to) {
-    __builtin_prefetch(to + kAhead * 2 * group_step_, 1);
+    __builtin_prefetch(to + kAhead * 2 * layout_.group, 1);
     std::copy_n(even + group * kRows, kRows, reinterpret_cast<Complex*>(to));
   });
 }
