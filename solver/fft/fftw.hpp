@@ -10,14 +10,15 @@
 
 #include "solver/grid/grid.hpp"
 
-/// FFTW's C interface, owned. Plans are estimated: those that are measured give other bits from run to run.
+/// FFTW's C interface with owned handles. Plans are estimated, since measured plans differ from run to run,
+/// and with them the bits.
 namespace slipstick::solver {
 
 /// As containers count.
 inline std::size_t count(Index n) { return static_cast<std::size_t>(n); }
 
-/// Complex lines that are transformed by one plan: from one value of a line to its next, and from one line to
-/// the next, where they are read and where they are written.
+/// Complex lines of one plan. step: from one value of a line to the next; distance: from one line to the
+/// next.
 struct FftwLines {
   int length;
   int count;

@@ -76,7 +76,7 @@ class HalfSampleTransform {
     store(work, lines, parity);
   }
 
-  /// A source's answer for a row in memory.
+  /// The packets of a row in memory, for backward().
   static auto packets(const double* row) {
     return [row](Index line) { return P::load(row + line); };
   }

@@ -13,19 +13,19 @@
 namespace slipstick::solver {
 
 /// Fourier transforms of real fields of n1 x n2 cells, padded with zeros to p1 x p2 = 2 m1 x 2 m2 with m1 >=
-/// n1 and m2 >= n2: for linear convolution. PeriodicTransform has arbitrary lengths and no padding. The two
-/// cannot be one without other bits: here no transform sees a zero that pads.
+/// n1 and m2 >= n2: for linear convolution. No transform contains a zero of the padding, which saves half of
+/// the work; PeriodicTransform, for convolution over a period, has no padding to save.
 ///
 /// With w = exp(-i pi/m) and m values x_j followed by m zeros, the even frequencies are the transform of x_j,
-/// the odd ones that of x_j w^j, both of length m. Backward, the first m values are the transform of the even
-/// frequencies plus w^-j times that of the odd ones.
+/// the odd ones the transform of x_j w^j, both of length m. Backward, the first m values are the transform of
+/// the even frequencies plus w^-j times the transform of the odd ones.
 ///
 /// 1. Rows: two at a time, as real and imaginary part of one sequence; written to transposed columns.
 /// 2. On several ranks: a transposition, from each rank's own rows to its own columns.
 /// 3. Columns: one by one, forward, multiplied by the caller, and back, while they are in cache.
-/// 4. Back in the reverse order.
+/// 4. The inverse of steps 2 and 1.
 ///
-/// Neither threads nor ranks change a bit.
+/// The bits do not depend on the number of threads and ranks.
 class PaddedTransform {
  public:
   using Complex = std::complex<double>;

@@ -11,18 +11,18 @@
 
 namespace slipstick::solver {
 
-/// Fourier transforms of real fields over a period of n1 x n2 values, of which only some rows are not zero.
-/// PaddedTransform is for linear convolution: there the period is twice the field in each direction, and the
-/// zeros cost nothing. Here lengths are arbitrary and rows may be permuted.
+/// Fourier transforms of real fields over a period of n1 x n2 values, with `samples` rows that may differ from
+/// zero: for convolution over a period. PaddedTransform is for linear convolution, where the period is twice
+/// the field in each direction.
 ///
 /// 1. Rows with samples: real to complex, one by one, from and to a thread's own memory (FFTW's plans in
 /// place
 ///    take three times as long).
 /// 2. On several ranks: a transposition, from each rank's own rows to its own columns.
 /// 3. Columns: a cache line of them at a time, forward, multiplied by the caller, and back.
-/// 4. Back in the reverse order. The result is n1 n2 times the inverse.
+/// 4. The inverse of steps 2 and 1. The result is n1 n2 times the inverse.
 ///
-/// Neither threads nor ranks change a bit.
+/// The bits do not depend on the number of threads and ranks.
 class PeriodicTransform {
  public:
   /// Columns in a cache line.

@@ -8,8 +8,8 @@
 
 namespace slipstick::solver {
 
-/// What a transform carries between ranks, between its pass over rows and that over columns; on one rank,
-/// which keeps all, it does nothing. Entries are some numbers that stay together.
+/// The exchange between ranks between a transform's pass over rows and its pass over columns; on one rank it
+/// does nothing. An entry of the matrix is `entry` numbers.
 struct RankTranspose {
   Ranks ranks;
   Index rows;
@@ -38,7 +38,7 @@ struct RankTranspose {
   void to_columns(double* buffer) const { transpose(buffer, true); }
   void to_rows(double* buffer) const { transpose(buffer, false); }
 
-  /// What all ranks together send for one way.
+  /// Bytes that all ranks together send in one direction.
   double sent_bytes() const {
     double entries = 0.0;
     for (int rank = 0; rank < ranks.number(); ++rank) {

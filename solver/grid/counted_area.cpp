@@ -6,13 +6,13 @@ namespace slipstick::solver {
 namespace {
 
 /// kCountedBySide is measured on 48 smooth contacts and stick areas against exact radii (0.06 to 0.095 in the
-/// mean of each kind) and on rough ones against meshes up to 16 times finer (0.08 to 0.11); from geometry
-/// alone the source has (pi - 1 + ln 2)/24 = 0.118. How far it differs from contact to contact, at most:
+/// mean of each kind) and on rough ones against meshes up to 16 times finer (0.08 to 0.11); the geometric
+/// estimate of Yastrebov et al. is (pi - 1 + ln 2)/24 = 0.118. Largest deviation of one contact:
 constexpr double kUncertainOfSide = 0.044;
-/// The place of the grid leaves this to chance, in cells over the root of the number of sides: for a circle
-/// about a cell's centre, each of whose cells counts eight times, the root mean square is 0.563 (Cramer 1922:
-/// that of the points within radius R is (2.54 R)^(1/2), and the circle has 8 R sides). Among 1,100 contacts
-/// and stick areas 1 in 200 is further off than by 2.44 of these, together with the above.
+/// Random part, by the place of the grid, in cells over sqrt(sides). A circle about a cell's centre, each of
+/// whose cells counts eight times, has the root mean square 0.563 (Cramer 1922: the count of points within
+/// radius R varies by (2.54 R)^(1/2), and the circle has 8 R sides). Among 1,100 contacts and stick areas 1 in
+/// 200 exceeds 2.44 times this together with kUncertainOfSide.
 constexpr double kChance = 1.375;
 
 /// Sides of cells between inside and outside.

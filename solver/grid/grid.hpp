@@ -15,7 +15,7 @@ struct Grid {
   double h1;  ///< cell size along x1
   double h2;  ///< cell size along x2
   bool quadrant = false;
-  Ranks ranks = {};  ///< the processes that share its rows
+  Ranks ranks = {};  ///< that share its rows
 
   Index cells() const { return n1 * n2; }
   double cell_area() const { return h1 * h2; }
@@ -30,10 +30,10 @@ struct Parity {
   int x2;
 };
 
-/// The smallest even 2^a 3^b 5^c 7^d >= max(minimum, 4): lengths that are transformed quickly.
+/// The smallest even 2^a 3^b 5^c 7^d >= max(minimum, 4): a length with fast transforms.
 Index fast_length(Index minimum);
 
-/// What a nested solve cost on one of its grids.
+/// The work of a nested solve on one of its grids.
 struct GridWork {
   Index n1 = 0;
   Index n2 = 0;
@@ -42,15 +42,14 @@ struct GridWork {
   double gap = 0.0;
 };
 
-/// An area of solved contact or stick, in the unit of the grid's cells. Counted cells say too much, at every
-/// mesh: a cell that the edge cuts carries what lies inside of it, as a whole. What they add is the same part
-/// of a cell, in the mean, at each of their sides that the edge passes along (Yastrebov, Anciaux and Molinari
-/// 2017, "On the accurate computation of the true contact-area in mechanical contact of random rough
-/// surfaces").
+/// An area of solved contact or stick, in the unit of the grid's cells. Counting cells overestimates it on
+/// every mesh, since a cell that the edge cuts may count in full: in the mean by the same part of a cell per
+/// side along the edge (Yastrebov, Anciaux and Molinari 2017, "On the accurate computation of the true
+/// contact-area in mechanical contact of random rough surfaces").
 struct CountedArea {
   double counted = 0.0;
   double corrected = 0.0;
-  double uncertainty = 0.0;  ///< of the corrected one: 99 of 100 are closer
+  double uncertainty = 0.0;  ///< of `corrected`, with a probability of 99 %
 };
 
 /// x1 and x2 of all cell centres: n1*n2 values each.

@@ -29,7 +29,7 @@ Weights overlaps(Index coarse, Index fine) {
   return weights;
 }
 
-/// Row i: weights of the coarse centres beside fine centre i.
+/// Row i: weights of the coarse centres next to fine centre i.
 Weights interpolation(Index fine, Index coarse, bool mirrored, int parity) {
   Weights weights(fine, coarse);
   const double ratio = static_cast<double>(coarse) / static_cast<double>(fine);
@@ -47,9 +47,9 @@ Weights interpolation(Index fine, Index coarse, bool mirrored, int parity) {
   return weights;
 }
 
-/// Row i: the parts of cell i of a row that each cell of another row covers; beyond the ends the outermost
-/// ones go on. ratio: of the sizes of a cell, the first row's over the other's; shift: of the first row's
-/// middle, in cells of the other.
+/// Row i: the fractions of cell i of the row `to` that each cell of the row `from` covers; the outermost
+/// cells of `from` extend to infinity. ratio: cell size of `to` over that of `from`; shift: middle of `to`,
+/// in cells of `from`.
 Weights coverings(Index to, Index from, double ratio, double shift) {
   constexpr double kSamePlace = 1e-6;  // of a cell: positions that a file holds are rounded
   const auto place = [&](Index i) {

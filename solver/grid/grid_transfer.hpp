@@ -12,14 +12,14 @@ namespace slipstick::solver {
 /// Half as many cells along each axis (rounded up).
 Grid coarser(const Grid& grid);
 
-/// Whether coarser(grid) is worth a solve: no side of the contact would be left with fewer than a few cells.
+/// True if coarser(grid) is worth a solve: each side of the contact keeps at least a few cells.
 bool can_coarsen(const Grid& grid);
 
 /// Mean over each coarse cell; one or several components.
 Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field);
 
-/// Mean over each cell of any grid, whose centre stands at `centre` in the coordinates of `from`, in the unit
-/// of both; beyond its edge the field goes on as along it. One component.
+/// Mean over each cell of the grid `to`, whose centre is at `centre` in the coordinates of `from`, in the
+/// same unit. Outside `from` the field has the value of the nearest edge cell. One component.
 Eigen::ArrayXd means_on(const Grid& to, const Grid& from, const Eigen::ArrayXd& field,
                         const std::array<double, 2>& centre = {});
 

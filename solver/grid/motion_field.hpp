@@ -7,9 +7,9 @@
 
 namespace slipstick::solver {
 
-/// The displacements of a rigid motion over a grid, (along1 - turn x2, along2 + turn x1) as two components or
-/// the first alone, worked out where they are asked for: no field of them is kept. What is said of values
-/// next to each other holds for those of one row, or of one component where they are packed.
+/// The displacements of a rigid motion over a grid, (along1 - turn x2, along2 + turn x1): two components, or
+/// only the first. They are computed on demand, not stored. A range of values must lie in one row, or of a
+/// packed field in one component.
 class MotionField {
  public:
   MotionField(const Grid& grid, double along1, double along2 = 0.0, double turn = 0.0)
@@ -36,7 +36,7 @@ class MotionField {
     const double* x;
   };
   Row row(Index first) const { return row(first, motion()); }
-  /// Likewise of another motion (along1, along2, turn) over the same cells.
+  /// The same for another motion (along1, along2, turn) over the same cells.
   Row row(Index first, const Eigen::Vector3d& motion) const {
     const double along1 = motion[0];
     const double along2 = motion[1];
@@ -58,7 +58,7 @@ class MotionField {
     return at.constant + at.slope * x(at, n);
   }
 
-  /// The sum of the products of as many values from `first` on with those of an array.
+  /// The dot product of `values` and the motion's values from `first` on.
   template <typename Values>
   double dot(Index first, const Values& values) const {
     const Row at = row(first);
@@ -67,7 +67,7 @@ class MotionField {
     return sum;
   }
 
-  /// part += factor times as many values from `first` on.
+  /// part += factor times the motion's values from `first` on.
   template <typename Part>
   void add_to(Part&& part, Index first, double factor) const {
     const Row at = row(first);

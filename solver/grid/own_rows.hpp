@@ -6,7 +6,7 @@
 
 #include "solver/grid/grid.hpp"
 
-/// Which rows of a grid belong to this rank, and fields that are known there.
+/// The rows of a grid that belong to this rank, and fields that are known only there.
 namespace slipstick::solver {
 
 /// Rows lie in at most kMaxBands bands of equally many rows (the last may have fewer). Each rank owns whole
@@ -31,7 +31,7 @@ inline IndexRange own_rows(Index rows, const Ranks& ranks) {
 }
 inline IndexRange own_rows(const Grid& grid) { return own_rows(grid.n1, grid.ranks); }
 
-/// Makes a field of any number of components whole: each process gets the rows of the others.
+/// Makes a field of any number of components whole on every rank.
 inline void share_rows(const Grid& grid, std::span<double> field) {
   const auto cells = static_cast<std::size_t>(grid.cells());
   if (!grid.ranks.several() || cells == 0) return;
@@ -44,8 +44,7 @@ inline void share_rows(const Grid& grid, Eigen::ArrayXd& field) {
   share_rows(grid, std::span(field.data(), static_cast<std::size_t>(field.size())));
 }
 
-/// Brings the rows next to this process's own, so many on each side, into a field of any number of
-/// components.
+/// Brings `depth` rows on each side of this rank's own into a field of any number of components.
 inline void share_rows_beside(const Grid& grid, Eigen::ArrayXd& field, Index depth) {
   for (Index start = 0; start < field.size(); start += grid.cells()) {
     grid.ranks.gather_beside(std::span(field.data() + start, static_cast<std::size_t>(grid.cells())), grid.n1,
@@ -53,7 +52,7 @@ inline void share_rows_beside(const Grid& grid, Eigen::ArrayXd& field, Index dep
   }
 }
 
-/// work(first, count) for the cells of this process's own rows, in each component of a field.
+/// work(first, count) for the cells of this rank's rows, in each component of a field.
 template <typename Work>
 void in_own_rows(const Grid& grid, Index size, const Work& work) {
   const IndexRange rows = own_rows(grid);
@@ -62,7 +61,7 @@ void in_own_rows(const Grid& grid, Index size, const Work& work) {
   }
 }
 
-/// A field that is known in this process's own rows alone: the memory of the other rows is given back.
+/// The same field in memory that holds only this rank's rows.
 inline Eigen::ArrayXd in_own_rows(const Grid& grid, Eigen::ArrayXd field) {
   if (!grid.ranks.several()) return field;
   Eigen::ArrayXd own(field.size());

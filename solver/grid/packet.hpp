@@ -6,8 +6,8 @@
 
 #include "solver/grid/grid.hpp"
 
-/// Vectors of 16 bytes, which every processor of the 64-bit families has: GCC's and Clang's extension, for
-/// the few loops in which compilers do not find the exchange of neighbours by themselves.
+/// Vectors of 16 bytes, which every 64-bit processor has (an extension of GCC and Clang), for the few loops
+/// that compilers do not vectorise because neighbours are exchanged.
 namespace slipstick::solver {
 
 /// Two values: one complex number.
@@ -31,8 +31,8 @@ struct Packet {
   static Vector gather(const double* from, Index stride) { return Vector{from[0], from[stride]}; }
   static void store(double* to, Vector packet) { std::memcpy(to, &packet, sizeof(packet)); }
 
-  /// work(i, Vector()) for each two of [first, last), and work(i, double()) for the last one of an odd count:
-  /// the second argument's type is that of the values from i on, which get() and put() take.
+  /// work(i, Vector()) for each two of [first, last), and work(i, double()) for the last one of an odd count.
+  /// get() and put() take values of the second argument's type from i on.
   template <typename Work>
   static void each(Index first, Index last, const Work& work) {
     Index i = first;
@@ -51,10 +51,10 @@ struct Packet {
 
   /// (a, b)
   static Vector alternating(double a, double b) { return Vector{a, b}; }
-  /// Each complex number's real part in place of its imaginary part.
+  /// Real and imaginary part exchanged.
   static Vector exchanged(Vector p) { return __builtin_shufflevector(p, p, 1, 0); }
 
-  /// Those samples x + i y of even number, and those of odd number from the last to the first.
+  /// The samples x + i y at even places, and those at odd places from the last to the first.
   struct Halves {
     Vector even;
     Vector odd;
@@ -71,7 +71,7 @@ struct Packet {
   }
 };
 
-/// Sums of n products with values of fields in single precision, a pass for all of them: sums[k] += w_k.r.
+/// sums[k] += w_k.r over n values, all k in one pass.
 template <std::size_t K>
 void add_dots(const std::array<const float*, K>& w, const double* r, Index n, double* sums) {
   std::array<Packet::Vector, K> pairs{};
@@ -89,7 +89,7 @@ void add_dots(const std::array<const float*, K>& w, const double* r, Index n, do
   for (std::size_t k = 0; k < K; ++k) sums[k] += pairs[k][0] + pairs[k][1] + last[k];
 }
 
-/// y -= the sum of part_k w_k, in n values.
+/// y -= sum over k of part_k w_k, for n values.
 template <std::size_t K>
 void take_out(const std::array<const float*, K>& w, const double* parts, double* y, Index n) {
   Packet::each(0, n, [&]<typename Value>(Index i, Value) {

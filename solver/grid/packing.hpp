@@ -10,35 +10,34 @@
 
 namespace slipstick::solver {
 
-/// Fields of some cells of a grid alone, one behind the other, component by component: what is kept of a
-/// contact takes as much memory as its cells, not as its grid. Operators, and what reaches beyond the cells,
-/// have such fields on their grid in one field that all of them share. The grid's fields need be known in its
-/// own rows alone.
+/// How fields are stored on a set of a grid's cells: the values of these cells only, one after the other,
+/// component by component. So a contact's fields take the memory of its cells, not of its grid. Operators
+/// work on one field of the whole grid, which all packed fields share. Fields of the grid need be known only
+/// in this rank's rows.
 class Packing {
  public:
-  /// No cell of a grid yet.
   Packing() = default;
-  /// For fields of so many components. Throws std::length_error for more cells than 32 bits count.
+  /// components: of the fields that on_grid() takes. Throws std::length_error for 2^32 cells or more.
   Packing(const Grid& grid, const Sweep& cells, Index components);
 
-  /// Over all cells of packed fields.
+  /// All cells of packed fields.
   const Sweep& cells() const { return packed_; }
   /// x1, then x2 of each cell.
   const std::shared_ptr<const Eigen::ArrayXd>& coordinates() const { return coordinates_; }
-  /// Where a cell of the grid stands; negative: nowhere.
+  /// The place of a cell of the grid; negative: it is not stored.
   Index place(Index cell) const { return is_whole() ? cell : static_cast<Index>(place_[cell]) - 1; }
-  /// Whether a packed field has anything but zero in a cell of the grid.
+  /// True if a packed field is not zero in a cell of the grid.
   bool holds(Index cell, const Eigen::ArrayXd& field) const {
     const Index i = place(cell);
     return i >= 0 && field[i] != 0.0;
   }
 
-  /// A field of any number of components, or of none: of the grid, packed; and back, with zeros elsewhere.
+  /// A field of any number of components (also none): from the grid to the set, and back, zero elsewhere.
   Eigen::ArrayXd packed(const Eigen::ArrayXd& field) const;
   Eigen::ArrayXd unpacked(const Eigen::ArrayXd& field) const;
 
-  /// work(x, y) on fields of the grid, which may be the same, with packed ones, which may be. Allocates
-  /// nothing.
+  /// Unpacks x, calls work(x, y) on fields of the grid, which may be one, and packs y. x and y may be one
+  /// field. Allocates nothing.
   template <typename Work>
   void on_grid(const Eigen::ArrayXd& x, Eigen::ArrayXd& y, const Work& work) {
     if (is_whole()) {
@@ -57,8 +56,8 @@ class Packing {
 
   Sweep cells_, packed_;  ///< the set on the grid, and as it is stored
   std::shared_ptr<const Eigen::ArrayXd> coordinates_;
-  // Where not all cells are kept:
-  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1; 0: nowhere
+  // Both empty if the set is the whole grid:
+  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< 1 + place of each cell; 0: not stored
   Eigen::ArrayXd on_grid_;
 };
 

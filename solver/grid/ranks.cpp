@@ -14,11 +14,12 @@
 namespace slipstick::solver {
 namespace {
 
-/// mpirun and srun tell their processes in these variables how many they are.
+/// mpirun and srun set one of these to the number of processes.
 constexpr std::array kNumberVariables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-/// Fields of more bytes are given memory of their own: untouched at first, and given back when they end.
+/// Blocks of more bytes are mapped by themselves: pages take memory only once touched, and are unmapped when
+/// the block is freed.
 constexpr int kOwnMemory = 1 << 20;
-/// Ranks that failed alike end within a moment of each other.
+/// Ranks that fail for the same reason end within a moment of each other.
 constexpr std::chrono::seconds kOthersEnd{10};
 
 int started() {
@@ -28,7 +29,7 @@ int started() {
   return 1;
 }
 
-/// The first of so many ranks, which cannot reach the others.
+/// Rank 0 of `number` ranks, which cannot reach the others.
 class Planned final : public Communicator {
  public:
   explicit Planned(int number) : number_(number) {}
@@ -42,7 +43,7 @@ class Planned final : public Communicator {
   [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
 
  private:
-  [[noreturn]] static void refuse() { throw std::logic_error("ranks that are planned alone share no work"); }
+  [[noreturn]] static void refuse() { throw std::logic_error("planned ranks share no work"); }
   int number_;
 };
 
@@ -52,7 +53,7 @@ int Ranks::number() const { return several() ? communicator_->number() : 1; }
 int Ranks::rank() const { return several() ? communicator_->rank() : 0; }
 
 Communicator& Ranks::communicator() const {
-  if (!several()) throw std::logic_error("one process alone has no communicator");
+  if (!several()) throw std::logic_error("a single process has no communicator");
   return *communicator_;
 }
 

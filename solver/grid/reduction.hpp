@@ -6,33 +6,31 @@
 
 namespace slipstick::solver {
 
-/// The part of a grid on which a contact has to be solved, and the way there and back: without the empty rows
-/// and columns around the contact, and of a contact with two mirror axes one quadrant.
+/// The part of a grid on which a contact is solved, and the transfer of fields to it and back: empty rows and
+/// columns around the contact are left out, and of a contact with two mirror axes three quadrants.
 class Reduction {
  public:
   Reduction() = default;
 
-  /// Nothing is left out.
+  /// The whole grid.
   explicit Reduction(const Grid& grid) : whole_(grid), trimmed_(grid), grid_(grid) {}
 
-  /// The empty rows and columns around the contact are left out; see below.
+  /// contact: positive in cells that may carry traction. Empty rows and columns around them are trimmed, as
+  /// many on one side as on the other, so that the origin stays in the middle.
   Reduction(const Grid& grid, const Eigen::ArrayXd& contact);
 
-  /// What a field that shapes the contact, even in x1 and x2 (the gap, the pressure), shows can be left out.
-  /// contact: cells that may carry traction are positive; the rest around them is trimmed, as much on one
-  /// side as on the other, so that the origin stays in the middle.
+  /// The same, and one quadrant if `shape`, the gap or the pressure, is even in x1 and in x2 there.
   Reduction(const Grid& grid, const Eigen::ArrayXd& shape, const Eigen::ArrayXd& contact);
 
   const Grid& grid() const { return grid_; }
   bool trimmed() const { return trimmed_.cells() < whole_.cells(); }
   bool quadrant() const { return grid_.quadrant; }
-  /// Whether the contact also has the diagonal for a mirror: then it is a square quadrant of square cells.
+  /// True if the diagonal is a mirror as well: then the quadrant and its cells are square.
   bool diagonal() const { return diagonal_; }
 
-  /// A field of one or more components on the reduced grid.
+  /// A field of one or more components on the reduced grid, and back: zero outside, mirrored by the parity of
+  /// each component.
   Eigen::ArrayXd restricted(Eigen::ArrayXd field) const;
-
-  /// And back: zero outside, mirrored by the parity of each component.
   Eigen::ArrayXd expanded(Eigen::ArrayXd field, const Symmetry& symmetry) const;
 
  private:
@@ -42,20 +40,20 @@ class Reduction {
   bool diagonal_ = false;
 };
 
-/// Whether a field of one value a cell is its own image under half a turn about the grid's middle, up to
-/// rounding. What has two mirror axes is so: rounding that each of them may show is no reason to take half a
-/// turn, which is both, for another answer. So whatever Reduction takes for a quadrant turns onto itself.
+/// True if a field of one value a cell equals its image under half a turn about the grid's middle, up to
+/// rounding. It is true for every field that Reduction reduces to a quadrant, although the rounding of the
+/// two mirrors adds up in half a turn.
 bool is_half_turn_symmetric(const Grid& grid, const Eigen::ArrayXd& field);
 
-/// p made its own image under half a turn, as it is up to the tolerance that it was solved to.
+/// (p(x) + p(-x))/2: the exact answer has this symmetry, a solved p up to its tolerance.
 Eigen::ArrayXd half_turn_symmetrised(const Eigen::ArrayXd& pressure);
 
-/// Whether a field of two components turns into itself under half a turn, (q1, q2)(-x) = -(q1, q2)(x), up to
-/// the rounding of a transform; and a field made so. An empty one is.
+/// True if (q1, q2)(-x) = -(q1, q2)(x) up to the rounding of a transform, or the field is empty; and the
+/// projection of a field onto this symmetry.
 bool turns_into_itself(const Eigen::ArrayXd& field);
 void turn_into_itself(Eigen::ArrayXd& field);
 
-/// p made even about the diagonal of its square grid: conjugate gradients leave it so up to their tolerance.
+/// p made even about the diagonal of its square grid; a solved p is so up to its tolerance.
 Eigen::ArrayXd symmetrised(const Grid& grid, const Eigen::ArrayXd& pressure);
 
 }  // namespace slipstick::solver

@@ -14,13 +14,12 @@ namespace {
 /// The pool of this thread.
 thread_local ThreadPool* current = nullptr;
 
-/// So often a thread looks for what it waits for before it sleeps: loops follow each other within some
-/// microseconds, and to be woken takes tens of them.
-constexpr int kLooks = 500;
+/// Polls before a thread sleeps: loops follow each other within microseconds, and waking takes tens of them.
+constexpr int kPolls = 500;
 
 template <typename Value>
 void wait_while(const std::atomic<Value>& value, Value old) {
-  for (int look = 0; look < kLooks; ++look) {
+  for (int poll = 0; poll < kPolls; ++poll) {
     if (value.load() != old) return;
     std::this_thread::yield();
   }
@@ -29,10 +28,10 @@ void wait_while(const std::atomic<Value>& value, Value old) {
 
 }  // namespace
 
-/// Parts of a job, each done by whoever takes it first: the thread that asks for them from the last part on,
-/// the others from the first. So it never waits for one that has no processor, but does that one's part.
+/// The parts of a job. The calling thread takes parts from the last one down, the others from the first one
+/// up, so that the caller does the part of a thread that has no processor instead of waiting for it.
 struct ThreadPool::Shared {
-  /// The parts that nobody has taken yet.
+  /// The parts that no thread has taken yet.
   struct Parts {
     std::uint16_t first;
     std::uint16_t last;
@@ -64,7 +63,8 @@ struct ThreadPool::Shared {
 
 ThreadPool::ThreadPool() : shared_(std::make_unique<Shared>()), outer_(std::exchange(current, this)) {}
 
-ThreadPool::ThreadPool(int threads) : ThreadPool() {  // so that the destructor stops those that have started
+/// The delegation makes the destructor run, and stop the started threads, if another one cannot start.
+ThreadPool::ThreadPool(int threads) : ThreadPool() {
   try {
     while (available() < threads) others_.emplace_back([this] { work(); });
   } catch (const std::exception&) {

@@ -8,27 +8,27 @@
 
 namespace slipstick::solver {
 
-/// Threads that wait for work as long as this object lives: those of one solve. Loops on the thread that made
-/// it are shared out to them; a loop without a pool makes its own.
+/// The threads of one solve, which wait for work while this object lives. Loops on the thread that made it
+/// run on them; a loop without a pool starts its own.
 class ThreadPool {
  public:
-  /// threads: in all, with the one that makes the pool. A pool within another one takes its place for a time.
-  /// Throws std::runtime_error where not all of them can be started.
+  /// threads: in all, with the one that makes the pool. A pool made within another one replaces it for its
+  /// lifetime. Throws std::runtime_error if not all threads can start.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Threads that the loops of the calling thread may use: those of its pool, or itself alone.
+  /// Number of threads for the loops of the calling thread: its pool's, or 1.
   static int available();
 
-  /// What each thread does, by its number.
+  /// The work of each thread, by its number.
   struct Job {
     void (*call)(const void* work, int thread);
     const void* work;
     void operator()(int thread) const { call(work, thread); }
   };
-  /// The job's parts, as many as `threads`, on the threads that there are. It must not throw.
+  /// Runs `threads` parts of the job on the available threads. The job must not throw.
   static void run(int threads, Job job);
 
  private:

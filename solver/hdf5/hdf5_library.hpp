@@ -11,7 +11,7 @@
 
 namespace slipstick::solver {
 
-/// Where values go in a file: a 1-D dataset of doubles or of bytes.
+/// A 1-D dataset of doubles or of bytes.
 struct DatasetLayout {
   std::string name;
   bool is_text;
@@ -20,17 +20,16 @@ struct DatasetLayout {
   std::size_t bytes() const { return size * bytes_of_value(); }
 };
 
-/// What libslipstick_hdf5 offers: all that calls HDF5, which brings some forty libraries along.
+/// The functions of libslipstick_hdf5. Only this module links HDF5, which needs some forty libraries.
 struct Hdf5Library {
   /// As solver::read_datasets().
   decltype(read_datasets)* read;
-  /// Makes a file whose values are still to be written; where those of each dataset lie. Throws
-  /// std::runtime_error.
+  /// Makes a file without values; returns the offset of each dataset's values. Throws std::runtime_error.
   std::vector<off_t> (*lay_out)(const std::filesystem::path& file,
                                 const std::vector<DatasetLayout>& datasets);
 };
 
-/// Opened by the first call. Throws InputError, which names `file`, where it cannot be.
+/// Loaded by the first call. Throws InputError, which names `file`, if it cannot be loaded.
 const Hdf5Library& hdf5_library(const std::filesystem::path& file);
 
 }  // namespace slipstick::solver

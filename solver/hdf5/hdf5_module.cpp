@@ -126,8 +126,8 @@ Dataset read_dataset(hid_t file, const std::string& name, int rank, Index most) 
   return values;
 }
 
-/// Says which file it was, should the HDF5 library crash while this lives: the library has no defence against
-/// files that were damaged with intent. The process then ends with the program's exit code for bad input.
+/// Names the file if the HDF5 library crashes during its lifetime, since the library does not withstand
+/// malicious files. The process then ends with the program's exit code for bad input.
 class CrashMessage {
  public:
   explicit CrashMessage(const path& file) {
@@ -188,7 +188,7 @@ off_t add_dataset(hid_t file, const DatasetLayout& layout) {
   return layout.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset.get())) : 0;
 }
 
-/// HDF5 lays the file out, and writes names alone: values are holes.
+/// HDF5 lays the file out and writes only names: values are holes.
 std::vector<off_t> lay_out(const path& file, const std::vector<DatasetLayout>& datasets) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, kNotLaidOut);

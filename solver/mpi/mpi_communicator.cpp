@@ -21,7 +21,7 @@ struct Part {
 Part part_of(int rank, Index count, Index of_rank) {
   return {std::min(rank * of_rank, count), std::min((rank + 1) * of_rank, count)};
 }
-/// The part that is in another one, and a part with what is next to it.
+/// The intersection of two parts, and a part with `depth` neighbours on each side.
 Part within(Part part, Part other) {
   const Index first = std::max(part.first, other.first);
   return {first, std::max(first, std::min(part.last, other.last))};
@@ -77,7 +77,7 @@ class MpiCommunicator final : public Communicator {
     for (int other = 1; other < number_; ++other) add_sent(bytes, part_of(rank_, count, of_rank).count());
   }
 
-  /// With few things a rank whoever has those next to it is not always the next rank.
+  /// Where ranks have fewer things than `depth`, neighbours belong to several ranks.
   void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) override {
     const Thing thing(bytes);
     const Part own = part_of(rank_, count, of_rank);
@@ -99,7 +99,7 @@ class MpiCommunicator final : public Communicator {
     MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   }
 
-  /// Two by two, so that what comes takes the place of what goes.
+  /// Pairs of ranks exchange blocks, so that a received block replaces the one that was sent.
   void transpose(void* buffer, const SharedMatrix& matrix, bool to_columns) override {
     for (int round = 0; round < number_; ++round) {
       const int other = (round - rank_ + number_) % number_;
@@ -131,13 +131,13 @@ class MpiCommunicator final : public Communicator {
   }
 
  private:
-  /// Rows of so many bytes of a matrix.
+  /// Rows of a matrix, and their bytes.
   struct Block {
     Index rows;
     std::size_t bytes;
     bool empty() const { return rows == 0 || bytes == 0; }
   };
-  /// What is sent at once, unless a row is more: it stays in cache while it is packed.
+  /// Bytes of a message, or one row if that is longer: they stay in cache while they are packed.
   static constexpr std::size_t kPiece = std::size_t{1} << 20;
 
   /// Sends one block of this rank's and puts another in its place, from the same rank.
@@ -179,7 +179,7 @@ class MpiCommunicator final : public Communicator {
   int rank_ = 0;
   Sent sent_;
   std::vector<std::byte> outgoing_, incoming_;
-  MPI_Comm ends_ = MPI_COMM_NULL;  ///< whatever ranks wait for elsewhere
+  MPI_Comm ends_ = MPI_COMM_NULL;  ///< for have_all_ended() only, so that no other message disturbs it
   MPI_Request ending_ = MPI_REQUEST_NULL;
 };
 

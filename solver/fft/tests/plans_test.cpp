@@ -27,8 +27,8 @@ std::vector<std::string> plans(int n) {
           text(plan_transform(2 * n, in, out, FFTW_FORWARD))};
 }
 
-/// That a process which has planned much gets the same bits as a new one rests on this: an estimated plan
-/// does not depend on what was planned before.
+/// An estimated plan does not depend on earlier plans, so that a process gets the same bits whatever it has
+/// planned before.
 TEST(EstimatedPlans, DoNotDependOnThoseBefore) {
   constexpr std::array lengths{8, 12, 20, 36, 54, 64, 70, 128, 162};
   std::vector<std::vector<std::string>> alone;

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, QuadrantTransfer, testing::ValuesIn(kGrids), [](
   return std::to_string(tested.param.n1) + "x" + std::to_string(tested.param.n2);
 });
 
-/// A quadrant stands for its mirror images: going to another grid and unfolding are exchangeable.
+/// Transfer to another grid and unfolding of a quadrant commute.
 TEST_P(QuadrantTransfer, IsThatOfTheMirrorImages) {
   Grid fine = GetParam();
   fine.quadrant = true;
@@ -146,8 +146,7 @@ TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
       Grid grid{n1, n2, 1.0, 1.0, quadrant};
       int steps = 0;
       for (; can_coarsen(grid); grid = coarser(grid)) ASSERT_LT(++steps, 20) << n1 << " x " << n2;
-      // Some cells across the whole contact are left, of which a quadrant has half; and where there were
-      // many along both sides not many are.
+      // A few cells remain across the whole contact, half of them in a quadrant, and from a long side few.
       const Index images = quadrant ? 2 : 1;
       const Index across = images * std::min(grid.n1, grid.n2);
       EXPECT_TRUE(steps == 0 || across >= 6) << n1 << " x " << n2;
@@ -156,8 +155,8 @@ TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
   }
 }
 
-/// A mean over any cells holds the integral, beyond the edge that of its outermost cells; over the same cells
-/// it is the field.
+/// Means over any cells keep the integral, where edge cells extend beyond the edge; means over the same cells
+/// are the field.
 TEST(MeansOn, OtherCellsHoldTheIntegral) {
   const Grid from{13, 9, 0.5, 2.0};
   const ArrayXd field = random_field(from.cells(), 3);

@@ -48,7 +48,7 @@ ArrayXd mirrored_to_rounding(const Grid& grid) {
   return patch(grid, 2.6) * (1.0 + kNearlyTooMuch * left) * (1.0 + kNearlyTooMuch * below);
 }
 
-/// What is solved on a quadrant is solved without translations: the two must never be of different minds.
+/// A quadrant is solved without translations, which half a turn excludes: both tests must agree.
 TEST(HalfTurn, BringsWhateverIsAQuadrantOntoItself) {
   const ArrayXd field = mirrored_to_rounding(kSquare);
   ASSERT_TRUE(of(kSquare, field).quadrant());
@@ -103,7 +103,7 @@ TEST(Reduction, NeedsEvenCounts) {
   }
 }
 
-/// One cell off by so much: rounding is let pass, anything that data could mean is not.
+/// One cell is off by a relative error: rounding passes, a difference in the data does not.
 TEST(Reduction, SeesOneCellThatIsNoImage) {
   for (const double off : {1e-10, -1e-10, 1e-12}) {
     ArrayXd field = patch(kSquare, 3.6);
@@ -148,7 +148,7 @@ TEST(Reduction, ComparesZerosAndInfinities) {
   EXPECT_FALSE(Reduction(kSquare, gap, reachable).quadrant());
 }
 
-/// What lies outside the contact's rectangle does not matter.
+/// The shape outside the contact's rectangle does not matter.
 TEST(Reduction, LooksAtTheContactAlone) {
   ArrayXd shape = patch(kSquare, 2.6);
   const ArrayXd contact = shape;
@@ -159,7 +159,7 @@ TEST(Reduction, LooksAtTheContactAlone) {
 // --- trimming ---
 
 TEST(Trimming, KeepsTheOriginInTheMiddle) {
-  // One cell alone, in row 3 of 16 and column 10 of 12.
+  // One cell, in row 3 of 16 and column 10 of 12.
   ArrayXd contact = ArrayXd::Zero(kOblong.cells());
   contact[cell(kOblong, 3, 10)] = 1.0;
   const Reduction part(kOblong, contact);
@@ -184,7 +184,7 @@ TEST(Trimming, LeavesAGridWithContactInACornerAlone) {
   EXPECT_FALSE(Reduction(kOblong).quadrant());
 }
 
-/// Nothing presses: something is left nevertheless, so that there is a grid.
+/// An empty contact still leaves a grid of some cells.
 TEST(Trimming, OfAnEmptyFieldLeavesTheMiddle) {
   expect_grid(Reduction(kOblong, ArrayXd::Zero(kOblong.cells())).grid(), {2, 2, 0.5, 0.7, false});
   const Grid odd{7, 1, 1.0, 1.0};
@@ -210,7 +210,7 @@ TEST(ThereAndBack, ExpandedFieldsComeBackUnchanged) {
   }
 }
 
-/// Fields with the mirrors that the reduction found are those that it can give back.
+/// Fields with the symmetry of the reduction survive it and its inverse.
 TEST(ThereAndBack, SymmetricFieldsInTheContactAreKept) {
   for (const Grid& grid : {kSquare, kOblong, Grid{15, 12, 0.5, 0.5}}) {
     const ArrayXd pressure = patch(grid, 2.6);
@@ -237,7 +237,7 @@ TEST(ThereAndBack, ExpandedFieldsHaveTheirParityAndAreZeroOutside) {
       const Index here = cell(kOblong, i, j);
       const Index across_1 = cell(kOblong, kOblong.n1 - 1 - i, j);
       const Index across_2 = cell(kOblong, i, kOblong.n2 - 1 - j);
-      EXPECT_EQ(q[here], q[across_1]);  // q1 is even in x1 and odd in x2, q2 the reverse
+      EXPECT_EQ(q[here], q[across_1]);  // q1 is even in x1 and odd in x2, q2 odd in x1 and even in x2
       EXPECT_EQ(q[here], -q[across_2]);
       EXPECT_EQ(q[here + n], -q[across_1 + n]);
       EXPECT_EQ(q[here + n], q[across_2 + n]);

@@ -51,8 +51,8 @@ double sum_of(const Sweep& sweep, const ArrayXd& field) {
   });
 }
 
-/// To the last bit, however the parts are shared out. A disc, a ring and two discs side by side are smooth;
-/// spots on every other cell, and scattered ones, are not.
+/// A disc, a ring and two discs side by side are smooth; spots on every other cell, and scattered ones, are
+/// ragged.
 TEST(Sweep, IsRaggedWhereItsCellsLieInSpots) {
   const Grid grid{64, 48, 1.0, 1.0};
   const auto ragged = [&](const auto& contains) {
@@ -95,7 +95,7 @@ TEST(Sweep, AllocatesNothingInAPool) {
   EXPECT_NE(sum, 0.0);
 }
 
-/// What a loop asks for it gets, whatever the pool has.
+/// A loop gets its number of parts whatever the size of the pool.
 TEST(ThreadPool, RunsEachPartOnce) {
   for (const int size : {1, 2, 4}) {
     const ThreadPool pool(size);
