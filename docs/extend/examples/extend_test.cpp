@@ -89,8 +89,8 @@ TEST(ExampleLaw, IsTakenByEveryMethod) {
   }
 }
 
-/// Under a layer that takes nearly all of the displacement each cell stands alone: q = phi r/compliance, up
-/// to mu p.
+/// If the layer takes nearly all of the displacement, the cells are independent: q = phi r/compliance, up to
+/// mu p.
 TEST(ExampleLaw, SticksWhereAVerySoftLayerAloneWould) {
   constexpr double kCompliance = 1e4;
   const Sphere sphere(kCompliance);

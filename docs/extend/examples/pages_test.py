@@ -1,5 +1,5 @@
-"""pages_test.py PROGRAM SOURCE_DIR: the pages of docs/extend show the files of docs/extend/examples as they are, name files
-and words that exist, and what their study, gates and figure are said to do they do."""
+"""pages_test.py PROGRAM SOURCE_DIR: the pages of docs/extend show the files of docs/extend/examples unchanged, and name files
+and words that exist; their study, gates and figure give the results that the pages state."""
 
 import json
 import re
