@@ -1,4 +1,4 @@
-# The front door: each target sets up, configures and builds what it needs and is out of date, then runs.
+# Each target installs missing packages, configures, builds the parts that it needs and that are out of date, and runs.
 
 BUILD := build
 PREFIX ?= /usr/local
@@ -30,11 +30,11 @@ help: ## show this list
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
 
-# Packages that setup installs and that were missing the last time are looked for again.
+# Configures again if packages were missing the last time that setup can install.
 configure: setup
 	@if [ ! -f $(BUILD)/build.ninja ] || grep -qs 'make setup' $(BUILD)/not_built.txt; then cmake --preset release; fi
 
-# $(call build,targets): builds them, and says at the end what was not built.
+# $(call build,targets): builds them, and then lists the optional parts that were not built.
 define build
 @cmake --build $(BUILD) --target $(1)
 @if [ -s $(BUILD)/not_built.txt ]; then echo; cat $(BUILD)/not_built.txt; echo; fi >&2
@@ -43,16 +43,16 @@ endef
 build: configure ## build everything, the program is build/slipstick
 	$(call build,all)
 
-report: configure ## compute all that the page shows and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
+report: configure ## compute the validation page and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
 	$(call build,slipstick)
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
-gallery: configure ## a page of every scene of the project, and an index of them: build/gallery/index.html (5 minutes; REPORT_OPTIONS="--quick": 3)
+gallery: configure ## make a page of every scene of the project, with an index, build/gallery/index.html (5 minutes; REPORT_OPTIONS="--quick": 3)
 	$(call build,slipstick)
 	@$(BUILD)/slipstick report convergence/scenes/*.toml --output $(BUILD)/gallery $(REPORT_OPTIONS)
 
-report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs chromium-driver and python3-selenium)
+report-pdf: configure ## print the page of `make report` to build/report/report.pdf (needs chromium-driver and python3-selenium)
 	@$(PYTHON) -B reports/pdf.py $(BUILD)/report/index.html \
 	  --output $(BUILD)/report/report.pdf
 
@@ -60,7 +60,7 @@ test: configure ## run every test
 	$(call build,tests)
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
 
-gate: configure ## check the numbers that README.md promises, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
+gate: configure ## check the numbers stated in README.md, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	$(call build,slipstick slipstick_work)
 	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
 	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \
@@ -71,18 +71,18 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	@$(BUILD)/slipstick gate $(patsubst %,convergence/gates/%.toml,quick digits exact) bench/gates/work.toml $(INSTRUCTION_GATES) \
 	  --results $(BUILD)/gates --output $(BUILD)/gates $(GATE_OPTIONS)
 
-literature: configure ## compare published numbers with ours (GATE_OPTIONS as for gate)
+literature: configure ## compare published numbers with this program's (GATE_OPTIONS as for gate)
 	$(call build,slipstick)
 	@$(BUILD)/slipstick gate convergence/literature/*.toml --output $(BUILD)/literature $(GATE_OPTIONS)
 
-hard: configure ## solve 782 hard scenes, each in several views; audit every one of them with NumPy (3 minutes)
+hard: configure ## solve 782 hard scenes and equivalent ones, and audit all with NumPy (3 minutes)
 	$(call build,slipstick)
 	@status=0; mkdir -p $(BUILD)/hard; \
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
 	  [ $$status -gt 1 ] || $(PYTHON) convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
 
-mutants: configure ## 240 small mistakes, made by rule: do tests and gates see them? (MUTANT_OPTIONS="--seed 2 --folder solver")
+mutants: configure ## check that tests and gates detect 240 small mistakes, made by rule (MUTANT_OPTIONS="--seed 2 --folder solver")
 	@$(PYTHON) -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
 SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))
@@ -92,7 +92,7 @@ sanitize: setup ## run every test under sanitizers (SANITIZER=tsan: threads; COM
 	@ctest --test-dir $(SANITIZED) --output-on-failure -j$$(nproc) \
 	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^(reports|docs|python)')
 
-coverage: setup ## which lines of analytic, solver and convergence do the tests run? At least 95 % (needs lcov)
+coverage: setup ## check that the tests run 95 % of the lines of analytic, solver and convergence (needs lcov)
 	@command -v lcov >/dev/null || { echo "make coverage: lcov is missing; on Debian: apt-get install lcov" >&2; exit 2; }
 	@test -f build-coverage/build.ninja || cmake --preset coverage
 	@cmake --build build-coverage --target tests
@@ -100,7 +100,7 @@ coverage: setup ## which lines of analytic, solver and convergence do the tests 
 	@build-coverage/slipstick report --quick --output build-coverage/report
 	@cmake/coverage build-coverage 95
 
-lint: setup ## check format and clang-tidy's rules, 14 or later (only what changed: LINT_SINCE=origin/main)
+lint: setup ## check the format and clang-tidy's rules, 14 or later (only changed files: LINT_SINCE=origin/main)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@test -f build-dev/build.ninja || cmake --preset dev
 	@cmake --build build-dev --target slipstick_commit
@@ -108,45 +108,45 @@ lint: setup ## check format and clang-tidy's rules, 14 or later (only what chang
 	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet \
 	  --extra-arg=-Wno-unused-command-line-argument --extra-arg=-Wno-unknown-warning-option
 
-bench: configure ## time everything, each time with its error, and draw it
+bench: configure ## time everything, each time with its error, and draw the results
 	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
-peers: configure ## what do other programs say? Installs those of PyPI (build/peers) and Debian, draws their pages, runs simulators
+peers: configure ## install other programs from PyPI (build/peers) and Debian, draw pages with their answers, run simulators
 	$(call build,slipstick)
 	@interfaces/programs/peers $(BUILD)/slipstick $(BUILD)
 
-bench-against: configure ## is this tree slower than REV (origin/main)? (bench/against itself exits with 0, 1 or 2)
+bench-against: configure ## compare the speed of this tree with REV, origin/main (bench/against itself exits with 0, 1 or 2)
 	@BUILD="$(BUILD)" bench/against "$(REV)" $(BENCH_OPTIONS)
 
-bench-trust: configure ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
+bench-trust: configure ## check that comparisons find a slowdown of 15 % and no other (a quarter of an hour)
 	@cmake --build $(BUILD) --target bench-trust
 
-references: configure ## write the table of proven values again (minutes; needs FLINT with Arb)
+references: configure ## compute the table of proven values (minutes; needs FLINT with Arb)
 	$(call build,slipstick)
 	@$(PYTHON) -B analytic/references/proven_references.py $(BUILD)/slipstick table
 
-hardest: configure ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
+hardest: configure ## search for inputs at which the exact functions are least accurate (SEARCH_OPTIONS="--seed 2 --samples 1000")
 	$(call build,slipstick)
 	@$(PYTHON) -B analytic/references/proven_references.py $(BUILD)/slipstick search $(SEARCH_OPTIONS)
 
-docs: ## make the documentation's site, build/site/index.html (needs MkDocs)
+docs: ## build the documentation's site, build/site/index.html (needs MkDocs)
 	@command -v mkdocs > /dev/null || \
 	  { echo "make docs: mkdocs is missing. On Debian or Ubuntu: apt-get install --no-install-recommends mkdocs" >&2; exit 2; }
 	@mkdocs build --strict --quiet --config-file docs/site/mkdocs.yml --site-dir "$(abspath $(BUILD))/site"
 	@echo "The documentation: $(abspath $(BUILD))/site/index.html"
 
-reference: configure ## write the pages of docs/reference that are made from the program; the C++ reference, with doxygen
+reference: configure ## write the generated pages of docs/reference; with doxygen also the C++ reference
 	$(call build,reference)
 
-python: configure ## the Python package, in build/python (pip install . makes a wheel instead)
+python: configure ## build the Python package in build/python (pip install . makes a wheel instead)
 	$(call build,slipstick_python)
 	@echo "To use it: PYTHONPATH=$(CURDIR)/$(BUILD)/python python3 -c 'import slipstick'"
 
-wheel: ## a wheel for any Linux as new, with the libraries it needs, in build/wheel (tools from PyPI)
+wheel: ## build a wheel for Linux, with the libraries that it needs, in build/wheel (tools from PyPI)
 	@cmake/wheel $(BUILD)/wheel
 
-deb: configure ## a Debian package in build/deb
+deb: configure ## build a Debian package in build/deb
 	$(call build,slipstick slipstick_c)
 	@cd $(BUILD) && rm -f deb/*.deb && { cpack -B deb > deb.log || { cat deb.log >&2; exit 1; }; } && ls "$$PWD"/deb/*.deb
 
@@ -154,5 +154,5 @@ install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick slipstick_c)
 	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"
 
-clean: ## remove what was built
+clean: ## remove all build folders
 	@rm -rf $(BUILD) build-*

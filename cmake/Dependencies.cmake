@@ -1,12 +1,12 @@
-# Every dependency comes from the distribution; a missing one is named with its Debian/Ubuntu package.
+# All dependencies are packages of the distribution; if one is missing, its Debian/Ubuntu package is named.
 
-# slipstick_not_built(<what> <why, and what to install>): said at the end of configuring, and by make after every build.
-# Where it names `make setup`, make looks for it again, for setup installs it.
+# slipstick_not_built(<part> <reason and package>): reports a part that is left out, when configuring ends and after every make.
+# If the reason names `make setup`, make configures again, since setup installs the package.
 function(slipstick_not_built what why)
   set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_NOT_BUILT "NOT BUILT: ${what}, because ${why}\n")
 endfunction()
 
-# slipstick_say_what_is_not_built(): writes not_built.txt, empty where all is built, and warns.
+# slipstick_say_what_is_not_built(): writes not_built.txt, empty if every part is built, and warns.
 function(slipstick_say_what_is_not_built)
   get_property(not_built GLOBAL PROPERTY SLIPSTICK_NOT_BUILT)
   file(WRITE "${PROJECT_BINARY_DIR}/not_built.txt" "${not_built}")
@@ -43,14 +43,14 @@ if(SLIPSTICK_BENCHMARKS)
   slipstick_require(benchmark libbenchmark-dev)
 endif()
 
-# FFTW's own CMake files are broken in several distributions; its pkg-config file is not.
+# In several distributions FFTW's own CMake files are broken; its pkg-config file works.
 pkg_check_modules(FFTW QUIET IMPORTED_TARGET fftw3)
 if(NOT FFTW_FOUND)
   message(FATAL_ERROR "FFTW 3 is missing. On Debian or Ubuntu: apt-get install libfftw3-dev.")
 endif()
 
 # Optional: one contact on several ranks.
-# Where MPI's programs are installed without its headers and libraries, find_package(MPI) ends in an error.
+# find_package(MPI) fails with an error if MPI's programs are installed without headers and libraries.
 find_library(SLIPSTICK_MPI_LIBRARY NAMES mpi mpich)
 mark_as_advanced(SLIPSTICK_MPI_LIBRARY)
 set(found_mpi OFF)
@@ -59,7 +59,7 @@ if(SLIPSTICK_MPI_LIBRARY)
   set(found_mpi ${MPI_C_FOUND})
 endif()
 option(SLIPSTICK_MPI "Solve one contact on several ranks: mpirun -n P slipstick solve" ${found_mpi})
-# Open MPI asks twice whether root means it, and once whether ranks may share a processor.
+# Open MPI requires two settings to run as root, and one to run several ranks on a processor.
 set(SLIPSTICK_MPIRUN OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
   OMPI_MCA_mpi_yield_when_idle=1)
 if(NOT found_mpi)

@@ -1,4 +1,4 @@
-# Arb: the library libarb (libflint-arb on Debian) beside FLINT 2, a part of FLINT since FLINT 3.
+# Arb is the library libarb (libflint-arb on Debian) with FLINT 2, and a part of FLINT since FLINT 3.
 # Defines Arb_FOUND, Arb_VERSION_FLINT (2 or 3) and the target Arb::arb.
 include(CheckCXXSourceCompiles)
 include(FindPackageHandleStandardArgs)
@@ -22,7 +22,7 @@ else()
   set(arb_libraries ${Arb_LIBRARY} ${Arb_FLINT_LIBRARY} ${Arb_MPFR_LIBRARY} ${Arb_GMP_LIBRARY})
 endif()
 
-# Headers and libraries may come from different installations: only a program that links shows that they match.
+# Headers and libraries may come from different installations: only linking a program shows that they match.
 if(Arb_FLINT_INCLUDE_DIR AND Arb_HEADER_DIR AND arb_libraries AND NOT arb_libraries MATCHES "NOTFOUND")
   set(CMAKE_REQUIRED_INCLUDES ${Arb_FLINT_INCLUDE_DIR} ${Arb_HEADER_DIR})
   set(CMAKE_REQUIRED_LIBRARIES ${arb_libraries})

@@ -1,7 +1,7 @@
-# make deb: one Debian package of all that `make install` installs, which says by itself what it depends on.
-set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # `make deb` builds what it packs, not the tests
+# make deb: one Debian package of all files that `make install` installs, with its dependencies.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # `make deb` builds the packaged targets, not the tests
 set(SLIPSTICK_MAINTAINER "slipstick developers <slipstick@users.noreply.github.com>" CACHE STRING "Whom a package names")
-string(TIMESTAMP package_date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH, where it is set
+string(TIMESTAMP package_date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH if it is set
 
 set(package_folder ${PROJECT_BINARY_DIR}/package)
 file(WRITE ${package_folder}/changelog "slipstick (${PROJECT_VERSION}) unstable; urgency=low
@@ -21,7 +21,7 @@ License: GPL-3+
 ")
 file(WRITE ${package_folder}/triggers "activate-noawait ldconfig\n")
 file(WRITE ${package_folder}/shlibs "libslipstick ${PROJECT_VERSION_MAJOR} slipstick (>= ${PROJECT_VERSION})\n")
-# What Debian wants of a package, done to the staged files alone: its documentation, pages of the manual compressed.
+# Debian requires documentation and compressed manual pages; this changes the staged files only.
 file(WRITE ${package_folder}/stage.cmake "set(root \"\${CPACK_TEMPORARY_DIRECTORY}/usr/share\")
 set(package \"${package_folder}\")
 file(COPY \"\${package}/copyright\" \"\${package}/changelog\" DESTINATION \"\${root}/doc/slipstick\")

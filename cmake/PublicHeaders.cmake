@@ -1,23 +1,23 @@
-# The headers that programs include as <slipstick/...>: copies of those named here, in one folder. They include each other,
-# Eigen and the standard library, nothing else.
+# Programs include these headers as <slipstick/...>: they are copied to one folder, and include only each other, Eigen and
+# the standard library.
 set(SLIPSTICK_PUBLIC_HEADERS
-  solver/scene/scene.hpp          # what to solve: validate(), read_scene()
+  solver/scene/scene.hpp          # the problem: validate(), read_scene()
   solver/scene/surface.hpp        # shapes of the indenter
-  solver/scene/friction_law.hpp   # what shear a pressure carries
+  solver/scene/friction_law.hpp   # friction bounds under a pressure
   solver/solve.hpp                # Scene in, Solution out
-  solver/cache/solve_cache.hpp    # what solves of one size share
+  solver/cache/solve_cache.hpp    # data shared by solves of one size
   solver/solution.hpp             # fields and numbers, SI
-  solver/contact/certificate.hpp  # how far tractions, anyone's, are from Coulomb's law
-  solver/contact/limit_load.hpp   # what a contact carries before all of it slides
-  solver/grid/grid.hpp            # cells, and how fields lie over them
-  solver/grid/ranks.hpp           # the processes that share a grid: one, unless the program says otherwise
-  solver/newton/safeguards.hpp    # what a solve did beside plain steps
+  solver/contact/certificate.hpp  # distance of any tractions from the law of friction
+  solver/contact/limit_load.hpp   # largest loads of a contact
+  solver/grid/grid.hpp            # cells, and the layout of fields
+  solver/grid/ranks.hpp           # the processes that share a grid: one by default
+  solver/newton/safeguards.hpp    # counts of a solve's safeguards
   solver/elasticity/operator_kind.hpp
   solver/input/field_file.hpp     # fields as CSV, HDF5, VTK
-  solver/input/input_error.hpp    # what is thrown for bad input
+  solver/input/input_error.hpp    # the exception for bad input
   analytic/axisymmetric.hpp       # contacts by their pressure
   analytic/torsion.hpp            # exact states: load, twist, stick radius, tractions
-  convergence/oracle/oracle.hpp)  # the exact answer for a scene
+  convergence/oracle/oracle.hpp)  # exact answers of scenes
 
 set(SLIPSTICK_PUBLIC_INCLUDE "${PROJECT_BINARY_DIR}/include")
 set(names)

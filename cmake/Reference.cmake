@@ -1,5 +1,5 @@
-# The target reference: pages of docs/reference that are made from the program itself, which are committed, and the C++
-# reference of the public headers by doxygen, where that is installed (build/docs/cpp/html).
+# The target reference writes the committed pages of docs/reference that come from the program and, if doxygen is installed,
+# the C++ reference of the public headers (build/docs/cpp/html).
 find_program(SLIPSTICK_DOXYGEN doxygen)
 mark_as_advanced(SLIPSTICK_DOXYGEN)
 if(SLIPSTICK_DOXYGEN)

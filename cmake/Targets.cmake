@@ -1,17 +1,17 @@
-# What all targets share: warnings, optimisation, include root, precompiled headers.
+# Settings of all targets: warnings, optimisation, include root, precompiled headers.
 
 option(SLIPSTICK_CCACHE "Compile through ccache where it is installed" ON)
 find_program(SLIPSTICK_CCACHE_PROGRAM ccache)
 mark_as_advanced(SLIPSTICK_CCACHE_PROGRAM)
 if(SLIPSTICK_CCACHE AND SLIPSTICK_CCACHE_PROGRAM AND "${CMAKE_CXX_COMPILER_LAUNCHER}" MATCHES "^(.*ccache)?$")
-  # ccache cannot see what a precompiled header defines.
+  # ccache cannot see the macros of a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
     ${SLIPSTICK_CCACHE_PROGRAM})
 endif()
-# Half of what is compiled here is templates: gcc collects its garbage too often for them.
+# Half of the compiled code is templates, for which gcc's garbage collector runs too often.
 add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
 
-# Headers of others that most units of a target include: read once per target, or per group of targets with equal flags.
+# Precompiled headers of other libraries: compiled once per target, or per group of targets with equal flags.
 set(SLIPSTICK_HEADERS <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <optional> <ostream> <set>
   <sstream> <string> <variant> <vector> <fmt/format.h>)
 
@@ -20,17 +20,17 @@ function(slipstick_configure target)
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 
-# For convergence/, which calls analytic/ and solver/ for its work: -O3 would take half as long again to compile.
+# convergence/ spends its time in analytic/ and solver/: -O3 would take half as long again to compile, without effect.
 function(slipstick_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# For commands and tests, which call code that is compiled elsewhere.
+# Commands and tests call code that is compiled elsewhere, so they need no optimisation.
 function(slipstick_compile_unoptimised target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
 endfunction()
 
-# The sources of each folder are compiled as one unit, which reads their headers once.
+# The sources of each folder are compiled as one unit, so that their headers are read once.
 option(SLIPSTICK_UNITY "Compile folder by folder: half the time of a first build, more for a single changed file" ON)
 function(slipstick_compile_by_folder target sources)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SLIPSTICK_UNITY} UNITY_BUILD_MODE GROUP)
@@ -60,17 +60,17 @@ function(slipstick_library folder)
   slipstick_compile_by_folder(${target} "${ARG_SOURCES}")
 endfunction()
 
-# slipstick_module(<name> SOURCES ... LIBRARIES ...): libslipstick_<name>, which is opened when it is asked for and not at
-# every start (cmake/loaded_library.hpp), the target slipstick_<name>_module. Programs find it by their run paths: in the
-# build in lib/slipstick, installed in SLIPSTICK_MODULES, in a wheel beside them.
+# slipstick_module(<name> SOURCES ... LIBRARIES ...): the target slipstick_<name>_module, a library libslipstick_<name> that is
+# opened on demand (cmake/loaded_library.hpp). Programs find it by their run paths: in lib/slipstick of the build, in
+# SLIPSTICK_MODULES of an installation, in the same folder of a wheel.
 set(SLIPSTICK_MODULES ${CMAKE_INSTALL_LIBDIR}/slipstick)
 set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/lib/slipstick)
-# A sanitizer's dlopen() asks in the program's place, and to it run paths of the old kind alone are known.
+# With a sanitizer dlopen() is called by the sanitizer's library, which uses only DT_RPATH of the program.
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   add_link_options(-Wl,--disable-new-dtags)
 endif()
-# slipstick_run_path(<target> <folders...>): of what is installed, from the start. To one that it shall replace CMake adds a
-# colon, and what stands behind that means the folder where the user stands.
+# slipstick_run_path(<target> <folders...>): sets the run path already in the build. If CMake replaced it during installation, it
+# would append a colon, and an empty path means the current folder.
 function(slipstick_run_path target)
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "${ARGN}" INSTALL_RPATH_USE_LINK_PATH ON
     BUILD_WITH_INSTALL_RPATH ON)
@@ -89,11 +89,11 @@ function(slipstick_module name)
   install(TARGETS ${target} LIBRARY DESTINATION ${SLIPSTICK_MODULES})
 endfunction()
 
-# Seconds after which a test hangs: a machine may have other work, so at least twenty times what the slowest, that of the
-# mutants, takes alone.
+# Time limit of a test in seconds. The limit is for tests that hang: at least twenty times the duration of the slowest test (the
+# mutants) on an idle machine.
 set(SLIPSTICK_TEST_HANGS 3600)
 
-# slipstick_headers(<name> HEADERS ... LIBRARIES ...): precompiled headers for several targets; their flags are to follow.
+# slipstick_headers(<name> HEADERS ... LIBRARIES ...): precompiled headers for several targets; set their flags after this.
 function(slipstick_headers name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
   add_library(${name} OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/headers.cpp)
@@ -108,8 +108,8 @@ if(SLIPSTICK_TESTS)
   slipstick_compile_unoptimised(slipstick_test_headers)
 endif()
 
-# slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest; or,
-# with SLIPSTICK_TEST_SHARDS, that many parts of the program, where starting it thousands of times would take minutes.
+# slipstick_tests(<name> SOURCES ... LIBRARIES ...): a GoogleTest program; each case is a test of CTest. With
+# SLIPSTICK_TEST_SHARDS the program runs in that many parts, because starting it thousands of times would take minutes.
 function(slipstick_tests name)
   if(NOT SLIPSTICK_TESTS)
     return()
@@ -118,7 +118,7 @@ function(slipstick_tests name)
   add_executable(${name} ${ARG_SOURCES} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tests/temporary_folder.cpp)
   add_dependencies(tests ${name})
   target_precompile_headers(${name} REUSE_FROM slipstick_test_headers)
-  # gcc 12 suspects std::string's operator+ where that comes out of a precompiled header.
+  # gcc 12 gives a false warning on std::string's operator+ from a precompiled header.
   target_compile_options(${name} PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow>)
   slipstick_configure(${name})
@@ -139,8 +139,8 @@ function(slipstick_tests name)
 endfunction()
 include(GoogleTest)
 
-# slipstick_fuzz_target(<name> SOURCE ... LIBRARIES ...): a program <name>_fuzz of one LLVMFuzzerTestOneInput(), and a test
-# that runs it on every file of corpus/<name> beside its source. With SLIPSTICK_FUZZERS libFuzzer is its main().
+# slipstick_fuzz_target(<name> SOURCE ... LIBRARIES ...): a program <name>_fuzz from one LLVMFuzzerTestOneInput(), and a test that
+# runs it on every file of corpus/<name> in the source's folder. With SLIPSTICK_FUZZERS libFuzzer provides main().
 option(SLIPSTICK_FUZZERS "Link the fuzz targets with libFuzzer; needs clang, see the preset fuzz" OFF)
 if(SLIPSTICK_FUZZERS AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   message(FATAL_ERROR "SLIPSTICK_FUZZERS needs clang, and the compiler is ${CMAKE_CXX_COMPILER_ID}: cmake --preset fuzz")

@@ -1,4 +1,4 @@
-# Writes the commit into a header; run at every build, touches the header only when it changes.
+# Writes the commit into a header at every build; changes the header only if the commit has changed.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C "${SOURCE_DIR}" describe --always --dirty
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -1,1 +1,1 @@
-// Nothing: targets that are compiled from this file alone hold precompiled headers for others.
+// An empty source: some targets compile only this file, to provide precompiled headers for others.

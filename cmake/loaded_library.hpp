@@ -7,10 +7,10 @@
 
 namespace slipstick {
 
-/// What the function `name` of the library lib<name>.so returns: a pointer to what it offers. The library is
-/// opened by the first call, found by the run path of the program or library that asks, and stays open.
-/// scope: RTLD_GLOBAL for one whose own plug-ins look for its symbols. Throws std::runtime_error, which names
-/// the library that is missing, this one or one that it needs.
+/// Opens the library lib<name>.so at the first call, by the run path of the calling program or library, and
+/// keeps it open. Returns the result of its function `name`: a pointer to its table of functions.
+/// scope: RTLD_GLOBAL if plug-ins of the library need its symbols. Throws std::runtime_error, which names the
+/// missing library: this one or one that it needs.
 template <class Offered>
 Offered* loaded_library(const std::string& name, int scope = RTLD_LOCAL) {
   void* const library = dlopen(("lib" + name + ".so").c_str(), RTLD_LAZY | scope);

@@ -1,5 +1,5 @@
-# The program with one source file changed: a mistake that the harness must see. What is replaced must stand in the file
-# exactly once.
+# A mutant is the program with a known mistake in one source file, which the gates must detect. The replaced text must occur
+# exactly once in the file.
 
 # mutant(<name> FILE <source> FIND <text> REPLACE <text> GATES <ids...>)
 function(mutant name)
@@ -11,8 +11,8 @@ function(mutant name)
   endforeach()
 endfunction()
 
-# add_mutant(<name> MUTANTS <list file> ORIGINAL <target>): the executable slipstick_mutant_<name>, `original` linked with
-# the mutated source before the library that holds the source as it is. Built on demand.
+# add_mutant(<name> MUTANTS <list file> ORIGINAL <target>): the executable slipstick_mutant_<name>: `original`, linked with the
+# mutated source before the library with the unchanged source. Built on demand.
 function(add_mutant name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "MUTANTS;ORIGINAL" "")
   set(source "${CMAKE_CURRENT_BINARY_DIR}/mutants/${name}.cpp")
@@ -28,8 +28,8 @@ function(add_mutant name)
   slipstick_configure(${target})
   target_include_directories(${target} PRIVATE $<TARGET_PROPERTY:slipstick_${folder},INCLUDE_DIRECTORIES>)
   target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:${ARG_ORIGINAL},LINK_LIBRARIES>)
-  # The folder that holds the original comes along as one unit. The first of two functions counts, for calls within that
-  # unit as well: position-independent code leaves the choice to the linker.
+  # The unchanged folder is linked too, as one unit. The linker uses the first of two equal functions, also for calls within the
+  # unit, since the code is position-independent.
   target_link_options(${target} PRIVATE -Wl,--allow-multiple-definition)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/mutants")
 endfunction()

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes small mistakes in the sources by rule, one at a time, and lists those that neither the tests nor the gates see.
+"""Makes small mistakes in the sources by rule, one at a time, and lists the mistakes that neither tests nor gates detect.
 
-Every C++ mutant is compiled into one build behind a switch; each runs against the test suites of its folder that reach
+All C++ mutants are compiled into one build, each behind a switch. Each runs against the test suites of its folder that reach
 it, the quickest first, and then against convergence/gates/quick.toml. Python mutants run against the tests of reports/.
-judged.toml says why some survivors are none. Exit code 0: all others are seen; 1: some are not; 2: nothing could be
+judged.toml gives the reasons why some survivors are no gaps. Exit code 0: all others are detected; 1: some are not; 2: nothing could be
 judged."""
 
 import argparse
@@ -25,7 +25,7 @@ FOLDERS = ("analytic", "solver", "convergence", "bench", "reports")
 DANGEROUS = ("convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
 # Programs that `make test` does not build: they check their own results.
 NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/missing.cpp")
-SPARE = 1.7  # proposed mutants for each that is wanted: not all of them compile
+SPARE = 1.7  # proposed mutants for each requested one: not all of them compile
 
 
 def sources(folder):
@@ -57,7 +57,7 @@ def sample(folder, count, chance):
 
 
 def propose(options):
-    """Per folder, how many mutants are wanted, and mutants in the order in which they are taken."""
+    """For each folder, the number of requested mutants, and proposals in the order in which they are used."""
     proposed, number = {}, 0
     for i, folder in enumerate(options.folder):
         wanted = options.count * (i + 1) // len(options.folder) - options.count * i // len(options.folder)
@@ -69,7 +69,7 @@ def propose(options):
 
 
 def judge(mutants, build, options, say):
-    """{mutant: how it was seen}; "" survives, None is not reached."""
+    """{mutant: the test that detected it}; "": it survives, None: no test reaches it."""
     highest = max((each.number for each in mutants), default=0)
     folders = {each.folder for each in mutants} - {"reports"}
     tests = runs.python_tests(build.source / "reports", say) if any(each.folder == "reports" for each in mutants) else []
@@ -95,7 +95,7 @@ def judge(mutants, build, options, say):
 
 
 def reasons():
-    """{(file, before, after): why a mutant is no hole}."""
+    """{(file, before, after): why a mutant is no gap}."""
     table = tomllib.loads(Path(__file__).with_name("judged.toml").read_text())
     return {(row["file"], row["before"], row["after"]): row["reason"] for row in table.get("mutant", [])}
 
@@ -107,7 +107,7 @@ def fate_of(found, reason):
 
 
 def report(judged, known):
-    """One row for each mutant, and how many of each folder met which fate."""
+    """One row for each mutant, and counts of outcomes by folder."""
     rows, totals = [], defaultdict(Counter)
     for mutant, found in sorted(judged.items(), key=lambda each: (each[0].file, each[0].line)):
         reason = known.get((mutant.file, mutant.before, mutant.after), "")

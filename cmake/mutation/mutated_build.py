@@ -67,7 +67,7 @@ class MutatedBuild:
             shutil.copy(self.root / name, target)
 
     def write_mutants(self, mutants):
-        """All C++ sources, those that hold mutants with them."""
+        """All C++ sources, including the mutated ones."""
         for path in [each for each in self.root.glob("*/**/*.cpp")] + list(self.root.glob("*.cpp")):
             name = path.relative_to(self.root).as_posix()
             if name.startswith("build"):
@@ -90,7 +90,7 @@ class MutatedBuild:
             raise BuildFailed(done.stdout[-4000:] + done.stderr[-4000:])
 
     def compile(self, mutants, jobs, gates):
-        """Those of `mutants` that compile, built into the tests of their folders and, with `gates`, into the program."""
+        """Builds the mutants into the tests of their folders and, with `gates`, into the program; returns the ones that compile."""
         known = (self.build / "build.ninja").read_text()
         targets = [program for folder in {each.folder for each in mutants} for program in PROGRAMS[folder]
                    if re.search(rf"^build {program}[ :]", known, re.MULTILINE)] + ["slipstick"] * gates

@@ -1,14 +1,14 @@
-"""Which small mistakes a source could hold, by rule, and the C++ source with many of them behind switches.
+"""Small mistakes by rule: all mutations of a source, and a C++ source with many of them behind switches.
 
-The rules work on characters: in clang-format's layout, as in the usual one of Python, an operator between two operands has
-blanks on both sides, a sign has none behind it. A mutation that is no C++ does not compile and is dropped then."""
+The rules work on characters. In the layout of clang-format, as in the usual one of Python, a binary operator has blanks on both
+sides, and a sign has none after it. A mutation that is not valid C++ does not compile and is dropped then."""
 
 import re
 from dataclasses import dataclass
 
 SWITCH = "::slipstick::mutation::"
 BRACKETS = {"(": ")", "[": "]", "{": "}"}
-# How tightly an operator binds. What is not listed ends an operand.
+# Precedence of operators. An operator that is not listed ends an operand.
 LEVELS = {"||": 1, "or": 1, "&&": 2, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4, ">": 4, ">=": 4, "is": 4,
           "is not": 4, "<<": 5, ">>": 5,
           "+": 6, "-": 6, "*": 7, "/": 7, "%": 7}
@@ -23,7 +23,7 @@ EXCLUDED_CPP = re.compile(r"\b(constexpr|consteval|static_assert|case|template|u
 
 @dataclass(frozen=True)
 class Mutation:
-    """One mistake: characters from `start` to `end` become `shown`. Those from `first` to `last` are the expression, or the
+    """One mistake: characters from `start` to `end` become `shown`. Characters from `first` to `last` are the expression, or the
     statement, that holds them."""
     rule: str
     start: int
@@ -35,7 +35,7 @@ class Mutation:
 
 def code_of(text, is_python):
     """The source with quotes instead of texts, blanks instead of comments and preprocessor lines. In Python a semicolon
-    stands for the end of a line that ends a statement, and for the colon before it."""
+    replaces the end of a line that ends a statement, and the colon before it."""
     if is_python:
         texts, comments = r'[rbfRBF]*(?:"""(?:.*?)"""|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', r"#[^\n]*"
     else:
@@ -56,7 +56,7 @@ def code_of(text, is_python):
 
 
 def partner(code, at, step=1):
-    """Where the bracket at `at` is closed, or opened where step is -1."""
+    """The bracket that closes the one at `at`, or opens it if step is -1."""
     depth = 0
     while 0 <= at < len(code):
         depth += (code[at] in "([{") - (code[at] in ")]}")
@@ -67,7 +67,7 @@ def partner(code, at, step=1):
 
 
 def operand_before(code, at, level):
-    """Where the left operand begins of an operator that binds as `level` says and stands behind `at`."""
+    """Begin of the left operand of the operator of precedence `level` behind `at`."""
     end = at
     while at > 0 and code[at - 1] not in "([{,;" and code[at - 2:at] != "}\n":
         stop = re.search(rf"(?:^|\s)({OPERATOR})\s+$", code[max(0, at - 12):at])
@@ -78,7 +78,7 @@ def operand_before(code, at, level):
 
 
 def operand_after(code, at, level):
-    """Where the right operand ends that begins at `at`."""
+    """End of the right operand that begins at `at`."""
     first = at
     while at < len(code) and code[at] not in ")]},;":
         stop = re.match(rf"\s+({OPERATOR})(?=\s)", code[at:at + 120])
@@ -136,7 +136,7 @@ def literals(code):
 
 
 def coordinates(code):
-    """x1 for x2 and the like."""
+    """x1 for x2, and similar exchanges."""
     for match in re.finditer(r"(?<![\w.>)\]])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\.[xnhq]([12])(?![\w(])", code):
         yield Mutation("index", *match.span(1), str(3 - int(match.group(1))), *match.span())
 
@@ -163,7 +163,7 @@ RULES = (operators, conditions, signs, literals, coordinates, extremes)
 
 
 def excluded_cpp(code):
-    """(first, last) of what the compiler computes, labels, and what stands in angle brackets."""
+    """(first, last) of constant expressions, labels, and text in angle brackets."""
     for match in re.finditer(r"(?<=\w)<(?:[^<>;(){}]|<(?:[^<>;(){}]|<[^<>;(){}]*>)*>)*>", code):
         yield match.span()
     for match in EXCLUDED_CPP.finditer(code):
@@ -186,14 +186,14 @@ def excluded_cpp(code):
 
 
 def excluded_python(code):
-    """(first, last) of what stands outside of functions, and of signatures."""
+    """(first, last) of text outside of functions, and of signatures."""
     for match in re.finditer(r"(?:^|;)(?:[^\s;]|\s*(?:def|class)\s)[^;]*", code):
         yield match.span()
 
 
 def is_size(code, at):
     """Whether `at` stands among the arguments of a call or in a table of a Python source. The numbers there are mostly sizes
-    and places of what is drawn."""
+    and positions in a drawing."""
     depth = 0
     for i in range(at - 1, -1, -1):
         depth += (code[i] in ")]}") - (code[i] in "([{")

@@ -1,4 +1,4 @@
-"""Test suites, what each reaches, and which of them see a mutant."""
+"""Test suites, the mutants that each reaches, and the suites that detect a mutant."""
 
 import os
 import re
@@ -16,7 +16,7 @@ import rules
 
 # A mutant hangs when its test takes TIMES its own time and MORE_SECONDS.
 TIMES, MORE_SECONDS = 5, 20
-PYTHON_SECONDS = 300  # a test file of reports/ takes up to 10
+PYTHON_SECONDS = 300  # the slowest test file of reports/ runs for 10
 BYTES = 8 << 30  # of address space
 PROGRAMS = {"analytic": ("analytic/analytic_tests", "analytic/certified/certified_tests"),
             "solver": ("solver/solver_tests", "solver/operators_tests"),
@@ -29,10 +29,10 @@ class Suite:
     command: list
     reached: set = field(default_factory=set)  # numbers of mutants
     seconds: float = 0.0
-    failing: tuple = ()  # tests that fail without any mutant: they count allocations and the like
+    failing: tuple = ()  # tests that fail without any mutant, since they count allocations, for example
 
     def words(self, folder):
-        """In `folder`, where it may write; {} stands for it."""
+        """Runs in `folder`, where it may write; {} is replaced by its name."""
         skipped = "-" + ":".join(self.failing) if self.failing else ""
         return [str(word).replace("{}", str(folder)) + (skipped if str(word).startswith("--gtest_filter") else "")
                 for word in self.command]
@@ -45,7 +45,7 @@ def limited():
 
 
 def run(words, folder, limit=None, **environment):
-    """Exit code, None after `limit` seconds, and output. What it has started ends with it."""
+    """Exit code, None after `limit` seconds, and output. All processes that it started end with it."""
     with tempfile.TemporaryFile("w+", errors="replace") as output:
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=output, stderr=output, cwd=folder,
                                    env=os.environ | {"TMPDIR": str(folder)} | environment, preexec_fn=limited)

@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <utility>
 
-/// What mutated sources are made of. All mutants are compiled into one program, and SLIPSTICK_MUTANT=17
-/// switches on the 17th; SLIPSTICK_REACHED names a file with one byte for each mutant, which becomes 1 when
-/// its place is reached.
+/// Mutated sources use these macros and functions. All mutants are compiled into one program;
+/// SLIPSTICK_MUTANT=17 switches on the 17th. SLIPSTICK_REACHED names a file with one byte for each mutant,
+/// which becomes 1 when its place is reached.
 namespace slipstick::mutation {
 
 struct Switch {
@@ -35,13 +35,13 @@ struct Switch {
 };
 
 inline bool on(int mutant) {
-  static const Switch chosen;  // when it is first asked for: objects of other units may be made before main
+  static const Switch chosen;  // at the first use: objects of other units may be constructed before main
   if (chosen.reached != nullptr && static_cast<std::size_t>(mutant) < chosen.mutants)
     chosen.reached[mutant] = 1;
   return chosen.mutant == mutant;
 }
 
-/// The value. An Eigen expression is evaluated, since its type says what is computed.
+/// The value. An Eigen expression is evaluated, since its type encodes the computation.
 template <class T>
 auto plain(T&& value) {
   if constexpr (requires { value.eval(); }) {
@@ -51,7 +51,7 @@ auto plain(T&& value) {
   }
 }
 
-/// What `original` returns; if the mutant is switched on, what `mutated` does. Mutants of strings would
+/// The result of `original`, or of `mutated` if the mutant is switched on. Mutants of strings would
 /// change wording only.
 template <class Mutated, class Original>
 auto choose(int mutant, Mutated mutated, Original original) {

@@ -1,4 +1,4 @@
-"""arrows_test.py SOURCE_DIR: no file includes what arrows.txt does not allow its folder, and no folder holds more than a
+"""arrows_test.py SOURCE_DIR: every include of a file is allowed for its folder by arrows.txt, and no folder has more than a
 dozen units (a unit: a header, its source, or both)."""
 
 import pathlib

@@ -1,5 +1,5 @@
-# For the tests of the front door: what they expect, counted and reported. Sets folder, which is removed at the end;
-# programs write to $folder/output, and those made up note their calls in $folder/calls.
+# Tests of the front door source this file: it counts and reports expectations. It sets `folder`, which is removed at the end.
+# Programs write to $folder/output; made-up programs note their calls in $folder/calls.
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 failures=0

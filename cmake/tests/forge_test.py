@@ -1,5 +1,5 @@
-"""forge_test.py SOURCE_DIR: workflows and the action can be read, their scripts are bash, and what they name is there.
-.ci/nightly holds them to the schemas of the forge too."""
+"""forge_test.py SOURCE_DIR: workflows and the action can be read, their scripts are bash, and the files that they name exist.
+.ci/nightly also validates them by the schemas of the forge."""
 
 import pathlib
 import re

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# make_test.sh <source folder>: each target of the Makefile builds what it runs and no more, and says after building what
-# was not built. cmake, ctest and the programs are made up.
+# make_test.sh <source folder>: each target of the Makefile builds exactly the targets that it runs, and then lists the parts
+# that were not built. cmake, ctest and the programs are made up.
 set -uo pipefail
 cd "$1" || exit 1
 source cmake/tests/expect.sh

@@ -1,21 +1,21 @@
-"""messages_test.py SOURCE_DIR: every message that the sources may print of bad input, failures and doubts stands in
-docs/reference/messages.md: the longest piece of its text that holds no number or name."""
+"""messages_test.py SOURCE_DIR: docs/reference/messages.md has every message of the sources about bad input, failures and doubtful
+results. Compares the longest part of a message without a number or name."""
 
 import pathlib
 import re
 import sys
 
-# Where messages begin: calls that refuse or fail, and what a result says of itself.
+# Messages begin at calls that refuse or fail, and at assignments of a result's texts.
 BEGINNING = re.compile(
     r"\bthrow\b(?! std::logic_error)"
     r"|\b(?:InputError|(?!logic_)\w+_error|out_of_range|fail\w*|refuse\w*|finish|stop|set_missing|set_number)\s*\("
     r"|\b(?:message|why|warning|reason|advice|note|\w+_note|trouble)(?:\"\])?\s*\+?=(?![=\\])")
 RAISING = re.compile(r"\braise InputError\(")
-# Every text of these files says why something is not so.
+# In these files every text is a reason.
 WHOLE = ("convergence/gates/gate.cpp", "convergence/check/diagnosis.cpp", "convergence/check/verdict.cpp",
          "convergence/oracle/oracle.cpp", "bench/compare/obstacles.cpp", "bench/timing/invalid_reason.cpp")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"(?:\s*"((?:[^"\\\n]|\\.)*)")*')
-SHORTEST = 12  # less could stand anywhere
+SHORTEST = 12  # characters; a shorter text could occur anywhere
 
 
 def without_comments(text):
@@ -23,7 +23,7 @@ def without_comments(text):
 
 
 def end_of(text, start):
-    """Where a call's arguments or an assignment end: at the closing bracket, or at the semicolon."""
+    """The end of a call's arguments or of an assignment: the closing bracket, or the semicolon."""
     depth, i = 0, start
     while i < len(text):
         if text[i] == '"':
@@ -43,7 +43,7 @@ def literals(text):
 
 
 def fragment(literal):
-    """The longest piece without a value in it, if it is several words."""
+    """The longest part without a value, if it has several words."""
     pieces = [piece.strip() for piece in re.split(r"\{[^{}]*\}", literal)]
     longest = max(pieces, key=len)
     return longest if len(longest) >= SHORTEST and " " in longest else ""

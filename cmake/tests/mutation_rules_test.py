@@ -15,7 +15,7 @@ import rules  # noqa: E402
 
 
 def mutants(line, rule, head, tail, is_python):
-    """What becomes of a function's line by one rule."""
+    """The mutations of a function's line by one rule."""
     text = head + line + tail
     return {rules.mutated(text, each)[len(head):-len(tail)] for each in rules.proposals(text, is_python) if each.rule == rule}
 
@@ -103,7 +103,7 @@ int main(int a, char**) {
   std::printf("%g", 0.5);
 }
 """
-    # What the program writes, started without arguments, when this stands instead of that.
+    # Output of the program, started without arguments, after this replacement.
     WRITTEN = {"": "0 1 3 1 0.5", "<=": "1 1 3 1 0.5", "!=": "0 0 3 1 0.5", "/": "0 1 0 1 0.5", "max": "0 1 3 7 0.5",
                "1.0": "0 1 3 1 1"}
 

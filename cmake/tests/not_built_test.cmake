@@ -1,5 +1,5 @@
 # cmake -D SOURCE_DIR=... -D WORK_DIR=... -P not_built_test.cmake: configures without FLINT, as on a machine that has none.
-# Each part that is not built is named, with the packages to install.
+# Each part that is not built is reported with the packages to install.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK_DIR})
 execute_process(

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# reference_test.sh <program> <docs/reference>: the pages there that are made from the program are those that this program
-# makes, and its completion completes.
+# reference_test.sh <program> <docs/reference>: the committed generated pages are the same as this program writes, and the
+# completion works.
 set -uo pipefail
 program="$1" committed="$2"
 source "$(dirname "${BASH_SOURCE[0]}")/expect.sh"

@@ -1,4 +1,4 @@
-// Stands in for libFuzzer where there is none: runs a fuzz target on each file of some folders, once.
+// Replaces libFuzzer if there is none: runs a fuzz target on each file of some folders, once.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-"""schema_test.py PROGRAM SOURCE_DIR: what the program writes follows docs/schema, and each null says why it is one."""
+"""schema_test.py PROGRAM SOURCE_DIR: the program's output follows docs/schema, and each null has a reason."""
 
 import copy
 import json
@@ -71,7 +71,7 @@ def parse(text):
 
 
 def unexplained(value, path="$"):
-    """Nulls without a reason beside them, and reasons without a null."""
+    """Nulls without a reason, and reasons without a null."""
     if isinstance(value, list):
         return [found for i, each in enumerate(value) for found in unexplained(each, f"{path}[{i}]")]
     if not isinstance(value, dict):
@@ -102,7 +102,7 @@ class Results(unittest.TestCase):
         self.assertEqual(unexplained(result), [])
 
     def run_program(self, *words, code=0):
-        """What the command writes; None: nothing."""
+        """The output of the command; None: it wrote nothing."""
         out = self.folder / "result.json"
         out.unlink(missing_ok=True)
         words = [str(word) for word in words]

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# setup_test.sh <source folder>: cmake/setup against made-up package managers. What the distribution has is installed or
-# setup fails, however slow the machine.
+# setup_test.sh <source folder>: runs cmake/setup with made-up package managers. It installs every package or fails, on any
+# slow machine.
 set -uo pipefail
 setup="$1/cmake/setup"
 source "$1/cmake/tests/expect.sh"
 export CALLS="$folder/calls" INSTALLED="$folder/installed" FLINT=2.9.0-5 LACKS=none
 
-# The fakes. $INSTALLED lists what is installed, $CALLS what apt-get was asked for.
+# Made-up programs. $INSTALLED lists the installed packages, $CALLS the calls of apt-get.
 mkdir "$folder/debian"
 cat > "$folder/debian/dpkg-query" <<'FAKE'
 #!/usr/bin/env bash
@@ -21,7 +21,7 @@ cat > "$folder/debian/dpkg" <<'FAKE'
 [[ "$1 $3" == "--compare-versions lt" ]] || exit 2
 ((${2%%.*} < $4))
 FAKE
-# Says what matters in its first lines, and much more after them: whoever stops reading breaks its pipe.
+# Prints the important lines first, and many more after them: a reader that stops early breaks the pipe.
 cat > "$folder/debian/apt-cache" <<'FAKE'
 #!/usr/bin/env bash
 printf '%s:\n  Installed: (none)\n  Candidate: 1.0\n' "${!#}"
@@ -96,7 +96,7 @@ for words in libgsl-dev libflint-arb-dev SLIPSTICK_SKIP_SETUP=1; do
   expect "setup says $words there" says "$words"
 done
 
-# A reader that leaves early breaks the pipe of the writer, which pipefail takes for failure.
+# A reader that stops early breaks the pipe of the writer, and pipefail then reports a failure.
 : > "$CALLS"
 grep --line-number --extended-regexp '\| *grep.* (-[a-zA-Z]*q|--quiet|--silent)' "$setup" "$1/.ci/run" > "$folder/output"
 expect "no pipe ends in a grep that leaves early" test ! -s "$folder/output"

@@ -1,4 +1,4 @@
-// Each test program has a temporary folder of its own, which goes when it ends.
+// Each test program has its own temporary folder, which is removed when it ends.
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

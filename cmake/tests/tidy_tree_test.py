@@ -10,15 +10,15 @@ MAX_FILE_LINES = 450
 MAX_FUNCTION_LINES = 60
 CPP = (".cpp", ".hpp", ".h", ".c")
 TEXTS = (*CPP, ".py", ".cmake", ".txt", ".md", ".sh", ".toml", ".j2")
-# A line that opens a scope which is no function: it may hold many.
+# A line that opens a scope other than a function, which may contain many functions.
 OTHER_SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum|concept|extern)\b[^()]*$|=\s*$")
 SENTENCE_WITH_OF = re.compile(r"(?:^|[.:;!?)]\s+)Of\s+(?!course)")
-# Tables are no constants.
+# Tables are not constants.
 CONSTANT = re.compile(r"^(?:inline )?constexpr (?!std::array)[\w:<>, ]+? (k[A-Z]\w*)(?: = ([^;]+)|(\{[^;]+\}));", re.M)
 
 
 def functions(lines):
-    """(first line, length) of each function: clang-format closes it at the indent where it began."""
+    """(first line, length) of each function: clang-format closes it at its first indent."""
     begin = 0
     while begin < len(lines):
         opened = re.match(r"( *)(?!//|\*|#|\{|\}|namespace|class|struct|union|enum|extern|public|private)\S", lines[begin])

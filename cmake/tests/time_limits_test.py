@@ -1,4 +1,4 @@
-"""time_limits_test.py BUILD_FOLDER SECONDS: every test may take so long; limits are for hangs, not for busy machines."""
+"""time_limits_test.py BUILD_FOLDER SECONDS: every test has this time limit or a longer one; limits are for tests that hang, not for busy machines."""
 
 import json
 import subprocess
