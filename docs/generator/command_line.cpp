@@ -22,7 +22,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text;
 }
 
-/// The type's name, with the range or the words that a check adds to it: "INT:INT in [1 - 9]".
+/// The type's name, with its range or its allowed words: "INT:INT in [1 - 9]".
 std::string value_of(const CLI::Option& option) {
   if (option.get_type_size() == 0) return "";
   std::string type = option.get_type_name();
@@ -171,15 +171,15 @@ std::string commands_markdown(const std::vector<CommandText>& commands) {
   std::string page =
       "# Commands\n\nWritten by `make reference` from the program's own options; a test fails where this "
       "page "
-      "differs from\nthem. `slipstick COMMAND --help` prints the same. What a command writes: "
-      "[results](results.md); how it ends:\n[exit codes](exit-codes.md).\n\n| command | does |\n|---|---|\n";
+      "differs from\nthem. `slipstick COMMAND --help` prints the same. See also [results](results.md) and "
+      "[exit codes](exit-codes.md).\n\n| command | task |\n|---|---|\n";
   for (const CommandText& command : commands) {
     page += fmt::format("| [`{0}`](#slipstick-{0}) | {1} |\n", command.name, markdown_cell(command.meaning));
   }
   for (const CommandText& command : commands) {
     page += fmt::format("\n## slipstick {}\n\n{}.\n\n```text\n{}\n```\n\n", command.name, command.meaning,
                         usage(command));
-    page += "| option | value | where left out | meaning |\n|---|---|---|---|\n";
+    page += "| option | value | default | meaning |\n|---|---|---|---|\n";
     for (const auto* const options : {&command.files, &command.options}) {
       for (const OptionText& option : *options) {
         page += fmt::format("| `{}` | {} | {} | {} |\n", option.name, in_code(option.value),
@@ -208,7 +208,8 @@ std::string commands_manual(const std::vector<CommandText>& commands, const std:
     page += fmt::format(".PP\n.nf\n{}\n.fi\n", in_troff(command.footer));
   }
   return page +
-         ".SH EXIT STATUS\n.TP\n0\nDone; what was judged is good.\n.TP\n1\nJudged and failed: a gate, a "
+         ".SH EXIT STATUS\n.TP\n0\nDone; everything that was judged is good.\n.TP\n1\nJudged and failed: a "
+         "gate, a "
          "regression, a solve that did not reach its tolerance.\n.TP\n2\nNothing was judged: bad input, a "
          "missing file, loads that the contact cannot carry, no memory.\n";
 }
@@ -234,7 +235,7 @@ std::string commands_completion(const std::vector<CommandText>& commands,
                       "    esac\n  fi\n"
                       "  [ -z \"$words\" ] || COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n}}\n"
                       "_slipstick_keys=\"{}=\"\n"
-                      "# Where it finds no word, a file.\n"
+                      "# If no word matches, bash completes files.\n"
                       "complete -o default -F _slipstick slipstick\n",
                       fmt::join(scene_keys, "= "));
 }

@@ -10,7 +10,7 @@ class App;
 /// The program's command line as text.
 namespace slipstick::docs {
 
-/// An option, or a file that stands without one.
+/// An option, or a file without an option.
 struct OptionText {
   std::string name;                ///< "--json", or without dashes for a file
   std::string value;               ///< "TEXT", "INT in [1 - 100]", "{a,b}"; empty: it takes none

@@ -90,11 +90,10 @@ std::string table_text(const std::string& table, const std::vector<std::string>&
     for (const SettingKey& key : keys) {
       if (table_of(key.name) == table) names.push_back(last_part(key.name));
     }
-    return fmt::format("As in {}: `{}`.\n", heading(other, keys), fmt::join(names, "`, `"));
+    return fmt::format("The same keys as in {}: `{}`.\n", heading(other, keys), fmt::join(names, "`, `"));
   }
-  return fmt::format(
-      "| key | type | unit | where left out | allowed | meaning |\n|---|---|---|---|---|---|\n{}",
-      fmt::join(rows, ""));
+  return fmt::format("| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n{}",
+                     fmt::join(rows, ""));
 }
 
 }  // namespace
@@ -106,9 +105,9 @@ std::string keys_markdown(const PageHead& head, const SettingKeys& keys) {
     if (std::ranges::find(tables, table) == tables.end()) tables.push_back(table);
   }
   std::string page = fmt::format(
-      "# {}\n\n{}\n\nWritten by `make reference` from the table that the program reads these files by; a "
+      "# {}\n\n{}\n\nWritten by `make reference` from the table of the program's reader; a "
       "test "
-      "fails where this page\ndiffers from it. An unknown key is an error that names the nearest known "
+      "fails if this page\ndiffers from it. An unknown key is an error that names the nearest known "
       "one.\n",
       head.title, head.text);
   for (auto table = tables.begin(); table != tables.end(); ++table) {

@@ -17,7 +17,7 @@
 namespace slipstick::docs {
 namespace {
 
-/// The keys that --set can give: those of tables that occur once.
+/// The keys for --set: keys of tables that occur once.
 std::vector<std::string> keys_of_one_table() {
   std::vector<std::string> names;
   for (const solver::SettingKey& key : solver::scene_keys()) {
@@ -29,26 +29,26 @@ std::vector<std::string> keys_of_one_table() {
 
 std::map<std::string, std::string> pages(const CLI::App& app) {
   const std::vector<CommandText> commands = command_texts(app);
-  return {
-      {"scene.md",
-       keys_markdown({"Keys of a scene",
-                      "What `slipstick solve SCENE.toml` and every command that takes a scene read. Units "
-                      "are SI, or any other\nconsistent set, though results name those of SI; `--set "
-                      "key=value` overrides any key, with its "
-                      "table: `--set load.moment_ratio=0.5`,\n`--set \"step[0].moment=2\"`. A word's "
-                      "meanings stand in the order of the words."},
-                     solver::scene_keys())},
-      {"study.md", keys_markdown({"Keys of a study", "What `slipstick study STUDY.toml` reads."},
-                                 convergence::study_keys())},
-      {"gate.md", keys_markdown({"Keys of a gate", "What `slipstick gate GATES.toml` reads."},
-                                convergence::gate_keys())},
-      {"hard.md", keys_markdown({"Keys of hard cases", "What `slipstick hard CASES.toml` reads."},
-                                convergence::hard_keys())},
-      {"program.md", keys_markdown({"Keys of a program", "What `solver.program` and `--program FILE` name."},
-                                   convergence::program_keys())},
-      {"commands.md", commands_markdown(commands)},
-      {"slipstick.1", commands_manual(commands, SLIPSTICK_VERSION)},
-      {"slipstick.bash", commands_completion(commands, keys_of_one_table())}};
+  return {{"scene.md",
+           keys_markdown(
+               {"Keys of a scene",
+                "`slipstick solve SCENE.toml`, and every command that takes a scene, reads these keys. Units "
+                "are SI, or\nany other consistent set, though results print SI units. `--set "
+                "key=value` overrides any key, with its table:\n`--set load.moment_ratio=0.5`, "
+                "`--set \"step[0].moment=2\"`. The meanings of allowed words are in the order of the words."},
+               solver::scene_keys())},
+          {"study.md", keys_markdown({"Keys of a study", "`slipstick study STUDY.toml` reads these keys."},
+                                     convergence::study_keys())},
+          {"gate.md", keys_markdown({"Keys of a gate", "`slipstick gate GATES.toml` reads these keys."},
+                                    convergence::gate_keys())},
+          {"hard.md", keys_markdown({"Keys of hard cases", "`slipstick hard CASES.toml` reads these keys."},
+                                    convergence::hard_keys())},
+          {"program.md", keys_markdown({"Keys of a program",
+                                        "`solver.program` and `--program FILE` name a file with these keys."},
+                                       convergence::program_keys())},
+          {"commands.md", commands_markdown(commands)},
+          {"slipstick.1", commands_manual(commands, SLIPSTICK_VERSION)},
+          {"slipstick.bash", commands_completion(commands, keys_of_one_table())}};
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ convergence::RunCommand add_reference_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("reference", "Write the reference that is made from the program");
   command->group(kHidden);
-  command->add_option("folder", *folder, "folder that gets the pages")->required();
+  command->add_option("folder", *folder, "folder for the pages")->required();
   return [&app, folder](std::ostream& text, nlohmann::ordered_json&) {
     solver::make_folder(*folder);
     for (const auto& [name, content] : pages(app)) {

@@ -1,4 +1,4 @@
-"""Hooks of MkDocs: what is no page stays out of the site; its search works on pages that are opened from a file, too."""
+"""Hooks of MkDocs: only pages go to the site; its search also works on pages that are opened from a file."""
 from pathlib import Path
 
 from mkdocs.structure.files import Files

@@ -1,6 +1,6 @@
-"""interface_test.py SOURCE_DIR [--write]: every name that a release promised is still there: keys of files, options,
-keys of results, exit codes, headers, functions of C and Python. The last release's names stand in
-docs/reference/interface-N.N.txt; --write writes those of this version, when it is released. New names are free."""
+"""interface_test.py SOURCE_DIR [--write]: every name of the last release still exists: keys of files, options, keys of results, exit
+codes, headers, functions of C and Python. docs/reference/interface-N.N.txt lists them; --write writes the names of this version
+before its release. New names are allowed."""
 
 import ast
 import json
@@ -12,7 +12,7 @@ ROW = re.compile(r"^\| `([^`]+)`")
 
 
 def keys(page):
-    """What a page of keys has, as TABLE.KEY; those above all tables by themselves."""
+    """The keys of a page, as TABLE.KEY, or as KEY above all tables."""
     table = ""
     for line in page.read_text().splitlines():
         if line.startswith("## "):

@@ -1,4 +1,4 @@
-"""The pages for people, README.md and docs/**/*.md, as their tests read them."""
+"""The documentation, README.md and docs/**/*.md, for its tests."""
 import pathlib
 import re
 
@@ -11,7 +11,7 @@ def pages(root):
 
 
 def without_blocks(text):
-    """The text with fenced blocks and comments blanked, line by line, so that places keep their numbers."""
+    """The text with fenced blocks and comments blanked, line by line, so that line numbers stay the same."""
     def blank(match):
         return "\n" * match.group().count("\n")
 

@@ -1,11 +1,11 @@
 """Runs the fenced blocks of a page in a scratch folder that looks like a checkout with a build in it.
 
-A comment above a block says what a reader need not see:
-    <!-- not run: REASON -->      its commands are held to the Makefile and to --help instead
-    <!-- exit code: 1 -->         what the block ends with, if not 0
-    <!-- needs: NAME -->          not run where there is no program or Python package of this name (Arb: no certified digits)
-    <!-- around: CODE @@ CODE --> what stands around it where it is a part of a program
-A file is written where the text before its block ends with its name in backquotes and a colon.
+A comment above a block gives properties that a reader need not see:
+    <!-- not run: REASON -->      its commands are only compared with the Makefile and with --help
+    <!-- exit code: 1 -->         the exit code of the block, if not 0
+    <!-- needs: NAME -->          not run if there is no program or Python package of this name (Arb: no certified digits)
+    <!-- around: CODE @@ CODE --> the program around a block that is a part of it
+A block is written to a file if the text before it ends with the file's name in backquotes and a colon.
 """
 import functools
 import glob
@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pages import line_of
 
 BLOCK = re.compile(r"((?:^<!--(?:(?!-->).)*-->[ \t]*\n+)*)^```(\w*)\n(.*?)^```[ \t]*$", re.S | re.M)
-HANGS = 900  # seconds, for what hangs; no block takes ten on an idle machine
+HANGS = 900  # seconds, for a block that hangs; no block takes ten on an idle machine
 
 
 @dataclass
@@ -54,7 +54,7 @@ def read_blocks(text):
 
 
 class Checkout:
-    """What pages are run against: sources, the program, an interpreter. All paths absolute."""
+    """Sources, program and interpreter for the pages. All paths are absolute."""
 
     def __init__(self, root, program, python):
         self.root, self.program, self.python = pathlib.Path(root), pathlib.Path(program), python
@@ -69,7 +69,7 @@ class Checkout:
         return set(re.findall(r"^([\w-]+):", (self.root / "Makefile").read_text(), re.M))
 
     def make_scratch(self, folder):
-        """A checkout as a reader has it, without what would let a block write into the sources' top folder."""
+        """A copy of a checkout in which a block cannot write into the sources' top folder."""
         folder.mkdir(parents=True)
         for name in ["analytic", "bench", "convergence", "cmake", "docs", "interfaces", "reports", "solver", "Makefile"]:
             (folder / name).symlink_to(self.root / name)
@@ -89,7 +89,7 @@ class Checkout:
 
     @functools.lru_cache(maxsize=None)
     def has(self, need):
-        """Whether it is a program, or Python can import it, or the program proves digits (Arb)."""
+        """Whether there is such a program, or Python can import it, or the program proves digits (Arb)."""
         if shutil.which(need):
             return True
         certified = [self.program, "exact", "--moment-ratio", "0.5", "--certified", "15"]
@@ -97,7 +97,7 @@ class Checkout:
         return subprocess.run(words, capture_output=True).returncode == 0
 
     def command_problems(self, text):
-        """What of the commands in it does not exist: options, targets of make, files of the project."""
+        """Options, targets of make and files of the project that the commands name and that do not exist."""
         problems = []
         for line in text.replace("\\\n", " ").splitlines():
             try:
@@ -232,7 +232,7 @@ class PageRun:
         return [] if block.file else ["say the name of this file before it"]
 
     def run_yaml(self, block, _):
-        """A workflow: is it YAML, and are its commands ours?"""
+        """A workflow must be YAML, and its commands must exist."""
         try:
             import yaml
         except ImportError:

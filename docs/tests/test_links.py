@@ -1,6 +1,6 @@
-"""test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md, CONTRIBUTING.md and docs/**/*.md leads
-somewhere, every file, function and test that they name exists, and the site builds without a warning and asks nothing of
-other servers, where MkDocs is installed."""
+"""test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md, CONTRIBUTING.md and docs/**/*.md has a
+target, and every file, function and test that they name exists. If MkDocs is installed, the site builds without a warning and
+loads nothing from other servers."""
 import pathlib
 import re
 import subprocess
@@ -34,7 +34,7 @@ def site_anchor(heading):
 
 
 def anchors(page):
-    """What #anchors of a page work on a forge and on the site alike."""
+    """The #anchors of a page that work both on a forge and on the site."""
     headings = re.findall(r"^#{1,6} (.*)$", without_blocks(page.read_text()), re.M)
     return {forge_anchor(heading) for heading in headings if forge_anchor(heading) == site_anchor(heading)}
 
@@ -53,7 +53,7 @@ def broken_links(page):
         elif not file.exists():
             yield f"{where}: no such file"
         elif page.parent != ROOT and not file.is_relative_to(ROOT / "docs"):
-            yield f"{where}: the site holds docs/ alone; name the file as code"
+            yield f"{where}: the site holds only docs/; name the file as code"
         elif anchor and (file.suffix != ".md" or anchor not in anchors(file)):
             yield f"{where}: no heading of this name, on a forge and on the site"
 

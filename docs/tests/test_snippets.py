@@ -1,5 +1,5 @@
-"""test_snippets.py SOURCE_DIR PROGRAM: every block of README.md and docs/**/*.md does what the page says,
-run from the text itself; and every command named in a sentence exists."""
+"""test_snippets.py SOURCE_DIR PROGRAM: every block of README.md and docs/**/*.md runs with the exit code that the page
+states, and every command named in a sentence exists."""
 import pathlib
 import re
 import resource
@@ -43,7 +43,7 @@ class PagesTest(unittest.TestCase):
 
 
 class RunnerTest(unittest.TestCase):
-    """Pages with mistakes, made up: each must be found."""
+    """Made-up pages with mistakes, which must be found."""
 
     def assert_found(self, text, wanted):
         self.assertIn(wanted, "\n".join(run(text).problems))

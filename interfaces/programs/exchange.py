@@ -1,4 +1,4 @@
-"""What the adapters share: a scene is read, a field and the program's own numbers are written."""
+"""Shared code of the adapters: reads a scene, writes a field and the program's own numbers."""
 
 import json
 import sys
@@ -35,12 +35,12 @@ class Exchange:
             sys.exit(NOT_FOR_IT)
 
     def require_half_spaces(self):
-        """For programs that know half-spaces of like materials, which touch anywhere on the grid."""
+        """For programs that model half-spaces of similar materials, which may touch anywhere on the grid."""
         self.require(self.scene["layer"] is None and self.scene["coupling"] == "none", "half-spaces without coupling alone")
         self.require(np.all(np.isfinite(self.gap)), "no bodies that end")
 
     def require_normal_contact(self, square=False):
-        """For programs that find the pressure under a given load, of half-spaces that touch anywhere."""
+        """For programs that find the pressure of half-spaces under a given load, which may touch anywhere."""
         self.require(self.pressure is None, "the pressure is given: nothing to solve")
         self.require(self.scene["layer"] is None and self.scene["coupling"] != "full", "half-spaces without coupling alone")
         self.require(np.all(np.isfinite(self.gap)), "no bodies that end")
@@ -49,7 +49,7 @@ class Exchange:
 
     def motion_under_loads(self, respond, pressure):
         """Displacements in m and rotation in rad, imposed or found by Powell's hybrid method (MINPACK), under which the tractions
-        q1 and q2 that `respond(motion)` returns carry the scene's loads; for programs that take a motion in place of loads."""
+        q1 and q2 that `respond(motion)` returns carry the scene's loads; for programs that take a motion instead of loads."""
         from scipy.optimize import root
         load, area = self.scene["load"], np.prod(self.cell_size)
         imposed = [*load.get("displacement", [None, None]), load.get("twist")]
@@ -73,7 +73,7 @@ class Exchange:
         return motion(root(missing, (wanted / (stiffness * unit))[free], options=options).x) if free else motion([])
 
     def answer(self, solve):
-        """Writes what solve() returns: a list of the pressure, or of it and both tractions, and numbers of the program's own."""
+        """Writes the result of solve(): a list with the pressure, or with pressure and both tractions, and the program's own numbers."""
         start = time.perf_counter()
         fields, numbers = solve()
         seconds = time.perf_counter() - start

@@ -1,5 +1,5 @@
-"""CONTACT (Kalker, Vollebregt): pressure and tractions by conjugate gradients. CONTACT_EXE says where the program is. It takes a
-rotation; the one under the scene's moment is searched for, a run for each."""
+"""CONTACT (Kalker, Vollebregt): pressure and tractions by conjugate gradients. CONTACT_EXE is the path of the program. It takes a
+rotation; the rotation for the scene's moment is found by several runs."""
 
 import os
 import subprocess
@@ -26,7 +26,7 @@ def run(folder, *words):
 
 
 def version():
-    """CONTACT says it at the start of each run, also of an empty one."""
+    """CONTACT prints its version at the start of each run, also of an empty one."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "empty.inp").write_text(" 0  MODULE\n")
         line = next(each for each in run(folder, "2", "empty").splitlines() if "Version" in each)
@@ -38,11 +38,11 @@ def main():
     exchange.require_half_spaces()
     exchange.require(exchange.pressure is None, "the pressure is given: CONTACT solves for it")
     (n1, n2), (h1, h2) = exchange.cells, (h / MILLI for h in exchange.cell_size)
-    shear, poisson = 2 * exchange.shear_modulus / MEGA, exchange.poisson_ratio  # like bodies: each has half of the compliance
+    shear, poisson = 2 * exchange.shear_modulus / MEGA, exchange.poisson_ratio  # similar bodies: each has half of the compliance
     gap = "\n".join(f"{each:.16e}" for each in exchange.gap.T.ravel() / MILLI)
 
     def responded(motion, folder):
-        """Pressure and tractions on the half-space, which is body 2; those that CONTACT writes act on body 1."""
+        """Pressure and tractions on the half-space, which is body 2; CONTACT writes the tractions on body 1."""
         (Path(folder) / "scene.inp").write_text(f""" 3  MODULE
  201100   P-B-T-N-F-S: a shift from rest, under a normal force, with a motion
  022020   L-D-C-M-Z-E: Coulomb's friction, tractions constant in each cell

@@ -1,5 +1,5 @@
-"""Drake: the moment is imposed, up to 0.9 of the exact limit, a quarter in a second: its friction follows from the rate. A point of
-contact has no moment about its normal; hydroelastic contact has a patch, with the modulus that `slipstick law` writes."""
+"""Drake: the moment is imposed, up to 0.9 of the exact limit, a quarter in a second: its friction depends on the rate. A contact
+point has no moment about its normal; hydroelastic contact has a patch, with the modulus that `slipstick law` writes."""
 
 import importlib.util
 import subprocess
@@ -19,7 +19,7 @@ def loop(sphere, hydroelastic):
     def run(folder):
         plant, simulator, moved = built(sphere, folder if hydroelastic else None)
         context, rows = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context()), []
-        moved.child_body().SetSpatialInertiaInBodyFrame(context, mass(sphere))  # what `law` writes has none: 1 kg m^2
+        moved.child_body().SetSpatialInertiaInBodyFrame(context, mass(sphere))  # the file of `law` gives no inertia: 1 kg m^2
         load = plant.get_actuation_input_port()
         load.FixValue(context, [-sphere.load, 0.0])
         plant.GetJointByName("up").set_translation(context, sphere.radius)
@@ -39,7 +39,7 @@ def mass(sphere):
 
 
 def built(sphere, folder):
-    """The plant, its simulator and the joint that turns; with a folder the sphere is what `slipstick law` writes there."""
+    """The plant, its simulator and the rotating joint; with a folder the sphere comes from the file that `slipstick law` writes there."""
     from pydrake.geometry import AddContactMaterial, AddRigidHydroelasticProperties, HalfSpace, ProximityProperties, Sphere
     from pydrake.math import RigidTransform
     from pydrake.multibody.parsing import Parser

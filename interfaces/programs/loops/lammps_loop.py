@@ -5,7 +5,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-STEP = 1e-6  # s, as twist.lmp has it
+STEP = 1e-6  # s, as in twist.lmp
 
 
 def runs(sphere):

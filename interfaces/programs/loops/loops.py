@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """loops.py PROGRAM SCENE [--json FILE] [--only NAME]: simulators twist the sphere of a scene there and back under its normal load,
-with their own friction and with what `slipstick law` writes for them. `slipstick check` judges each loop; stiffness at the first
-step, largest moment and energy lost stand beside the exact ones. What is not installed is left out, and said."""
+with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result has
+stiffness at the first step, largest moment and energy lost, relative to the exact values. Reports simulators that are missing."""
 
 import argparse
 import importlib
@@ -46,7 +46,7 @@ class Sphere:
 
 
 def judged(sphere, name, version, friction, loop):
-    """The loop as `check` reads and judges it."""
+    """Writes the loop for `check`, and returns its verdict."""
     with tempfile.TemporaryDirectory() as folder:
         rows = loop(Path(folder))
         file = Path(folder) / "loop.csv"

@@ -1,4 +1,4 @@
-"""MuJoCo: the moment is imposed, up to 0.9 of the exact limit, a quarter in four seconds: its friction follows from the rate."""
+"""MuJoCo: the moment is imposed, up to 0.9 of the exact limit, a quarter in four seconds: its friction depends on the rate."""
 
 import importlib.util
 from importlib.metadata import version

@@ -1,4 +1,4 @@
-# Yade runs this: two spheres as scene.json says, the upper one twisted there and back.
+# A script for Yade: two spheres from scene.json, the upper one twisted there and back.
 import json
 import math
 

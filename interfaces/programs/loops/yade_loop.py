@@ -1,5 +1,5 @@
-"""Yade, `yade`: two equal spheres of twice the radius are one of this radius on a half-space. The rotation is imposed. Its law
-with a twisting moment is that of CohFrictMat, a spring and a cap; Hertz-Mindlin's has none."""
+"""Yade, `yade`: two equal spheres of twice the radius are one of this radius on a half-space. The rotation is imposed. The law
+of CohFrictMat has a twisting moment, a spring with a cap; Hertz-Mindlin's law has none."""
 
 import json
 import shutil
@@ -12,7 +12,7 @@ def runs(sphere):
         raise LookupError("there is no yade")
     version = subprocess.run(["yade", "--version"], capture_output=True, text=True).stdout.split(":")[-1].split(",")[0].strip()
     law, radius = sphere.law["programs"]["lammps"], 2 * sphere.radius
-    shear = sphere.poisson * sphere.young * radius  # N/m, the stiffness that Yade makes of `poisson`, its ratio of stiffnesses
+    shear = sphere.poisson * sphere.young * radius  # N/m, from Yade's `poisson`, a ratio of stiffnesses
     own = {"alphaKtw": 2.0, "etaTwist": -1.0}  # Yade's defaults: no cap
     ours = {"alphaKtw": law["k_twist"] / (shear * radius**2), "etaTwist": law["mu_twist"] / radius}
     words = "slipstick law, its spring and cap: " + ", ".join(f"{key} = {ours[key]:.5g}" for key in ours)

@@ -1,4 +1,4 @@
-"""Pressure and tractions of a scene by accelerated projected gradients: a solver as short as it can be."""
+"""Pressure and tractions of a scene by accelerated projected gradients: a minimal solver."""
 import json
 import pathlib
 import sys
@@ -22,7 +22,7 @@ def convolved(kernel, field):
 
 
 def minimise(apply, linear, project, q, tolerance, most=2000):
-    """The least q.Kq/2 + linear.q over what project() projects on, with momentum that starts anew where it misleads."""
+    """Minimises q.Kq/2 + linear.q over the set of project(), with momentum that restarts when the energy rises."""
     v = np.random.default_rng(0).standard_normal(q.shape)
     for _ in range(30):
         v = apply(v / np.linalg.norm(v))

@@ -1,5 +1,5 @@
-"""loops_test.py PROGRAM SCENES NAME PYTHON: what `slipstick law` says of a simulator, held to the loops that it ran. Left out (77)
-where it is not installed. PYTHON runs it, if it is there: that of `make peers`, with MuJoCo and Drake."""
+"""loops_test.py PROGRAM SCENES NAME PYTHON: compares loops of a simulator with the errors that `slipstick law` states for it. Skipped
+(77) if it is not installed. PYTHON runs the simulator if possible: the Python of `make peers`, with MuJoCo and Drake."""
 
 import json
 import os
@@ -13,7 +13,7 @@ LOAD = 1000.0  # N, the scene's
 
 
 def is_spring_and_slider(loop, law):
-    """It loses four times the limit for what it turns beyond the spring's reach."""
+    """It loses four times the limit times the rotation beyond the elastic range."""
     stiffness, limit = law["k_twist"], law["mu_twist"] * LOAD
     assert abs(loop["largest_moment_over_limit"] - 1) < 1e-6, loop
     measured = loop["loads"][0]
@@ -29,7 +29,7 @@ def is_a_cap_without_memory(loop):
 
 
 def creeps(loop, exact):
-    """Below the limit, where the right answer stands still."""
+    """Creep below the limit, where the right rotation is constant."""
     assert loop["largest_moment_over_limit"] < 0.91, loop
     assert loop["largest_rotation"] > 3 * exact, loop
 

@@ -1,5 +1,5 @@
-"""peers_test.py PROGRAM SCENES NAME: another program's answers beside this one's, which solve the same discrete problem. Left out
-(77) where that program is not installed."""
+"""peers_test.py PROGRAM SCENES NAME: compares another program's answers with this one's; both solve the same discrete problem. Skipped
+(77) if that program is not installed."""
 
 import json
 import subprocess
@@ -11,14 +11,14 @@ from pathlib import Path
 PROGRAMS = Path(__file__).resolve().parents[1]
 CELLS = ("--set", "grid.cells=[24,24]")
 FORCE = ("mindlin", ("load.twist=0",), "displacement")  # without rotation, Poisson's ratios zero
-# Scenes, what is set in them, and the numbers that are compared.
+# Scenes, their changed keys, and the compared numbers.
 WHOLE = [("paper", (), "twist_angle"), ("mindlin", (), "displacement"), ("ellipse", (), "peak_pressure"),
          ("imposed_displacement", (), "moment"), ("off_centre", (), "twist_angle")]
 COMPARED = {"siconos": WHOLE, "contact": WHOLE,
             "aspher": [("paper", (), "approach"), FORCE],
             "tamaas": [("paper", (), "approach"), ("ellipse", (), "peak_pressure")],
             "contactmechanics": [("paper", (), "approach"), ("ellipse", (), "peak_pressure")]}
-WITHIN = 1e-5  # relative; the fewest digits are CONTACT's, six
+WITHIN = 1e-5  # relative; CONTACT writes the fewest digits, six
 
 
 def solved(program, scene, settings, *words):

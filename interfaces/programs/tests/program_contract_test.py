@@ -1,5 +1,5 @@
-"""Other programs in place of a method: the NumPy solver of the guide, with and without mistakes, and programs that are
-killed, hang, lie or talk. `--pages` draws the page of every mistake (minutes); without it their fields are checked."""
+"""Other programs as solvers: the NumPy solver of the guide, with and without mistakes, and programs that are killed, hang, report
+a wrong status or print text. `--pages` draws the page of every mistake (minutes); without it their fields are checked."""
 
 import json
 import os
@@ -18,14 +18,14 @@ SCENES = HERE.parents[2] / "convergence" / "scenes"
 PROGRAM = sys.argv[1]
 PAGES = "--pages" in sys.argv
 
-CIRCLES = """    def turning(q):  # along the circles about the axis alone
+CIRCLES = """    def turning(q):  # only along the circles about the axis
         around = motions[2] / np.hypot(*motions[2])
         return around * np.sum(around * q, axis=0)
 
     def apply(q):
         q = turning(q)
 """
-# What is planted, and words of the reason.
+# Planted mistakes, and words of the reason.
 MISTAKES = {
     "K12 even": ([("/ g)\n    x1, x2", "/ g)\n    k12 = np.fft.rfft2(abs(np.fft.irfft2(k12)))\n    x1, x2")], "K12"),
     "one body's modulus": ([('scene["combined"]["shear_modulus"]',
@@ -154,7 +154,7 @@ class OfTheGuide(WithFolder):
                 self.assertIn(reason, done.stdout)
 
 
-# Ends of programs: what they do, and words of the message.
+# Failures of programs, and words of the message.
 FIELD = "x1,x2,pressure,q1,q2\\n"
 BROKEN = {
     "killed": ("import os; os.kill(os.getpid(), 9)", "killed by signal 9"),
@@ -193,8 +193,8 @@ class ThatBreak(WithFolder):
         self.assertEqual(left, [])
 
     def test_leaves_no_process_behind(self):
-        """One that has left its group, session and parent, and ignores SIGTERM, ends with it: where it ends, takes too long,
-        is killed, and where this program is killed."""
+        """A process that has left the program's group, session and parent, and ignores SIGTERM, is ended too: when the program ends, takes
+        too long or is killed, and when slipstick is killed."""
         daemon = ("import os, signal\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n"
                   "        for each in (signal.SIGTERM, signal.SIGHUP): signal.signal(each, signal.SIG_IGN)\n"
                   "        os.close(1), os.close(2)\n        open(os.environ['STARTED'], 'w').close()\n        time.sleep(1000)\n"
@@ -223,8 +223,7 @@ class ThatBreak(WithFolder):
                 self.assertEqual(left, [])
 
     def test_says_its_twist_in_rad(self):
-        """Under the name that results have for rad; the name of before, which results have for the normalised twist, is
-        understood where that is missing."""
+        """The twist in rad has the name twist_angle, as in results; if it is missing, `twist` is read in rad."""
         right = (NUMPY / "solver.py").read_text()
         for numbers, said in (('"twist_angle": motion[2] / size', {"twist_angle"}),
                               ('"twist": motion[2] / size', {"twist_angle", "twist"}),
@@ -283,7 +282,7 @@ class ThatBreak(WithFolder):
             self.assertEqual(done.returncode, 2, words)
             self.assertFalse(trace.exists(), words)
         self.assertIn("--allow-programs", run("solve", scene).stderr)
-        # A program that the command line names lets no other one run, however a file names that.
+        # A program from the command line does not permit programs that a file names.
         study = self.folder / "study.toml"
         study.write_text(f'name = "a"\nscene = "{SCENES / "paper.toml"}"\ncells = [8, 12]\n[[vary]]\nkey = "solver"\n'
                          f"values = ['{{program = \"{program}\"}}']\n")

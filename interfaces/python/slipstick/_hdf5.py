@@ -1,4 +1,4 @@
-"""HDF5 files by h5py, where the package has no HDF5 library of its own: a wheel holds none."""
+"""HDF5 files by h5py, if the package has no HDF5 library of its own; a wheel has none."""
 from __future__ import annotations
 
 import os
@@ -14,7 +14,7 @@ from .errors import InputError
 
 
 def is_h5py_needed(file: str | os.PathLike[str]) -> bool:
-    """Whether it is an HDF5 file that the library cannot read or write."""
+    """Whether the file is HDF5 and the library cannot read or write it."""
     return Path(file).suffix in (".h5", ".hdf5") and not _library.has_hdf5()
 
 
@@ -28,7 +28,7 @@ def _h5py(file: str | os.PathLike[str]) -> Any:
 
 
 def read(file: str | os.PathLike[str]) -> dict[str, npt.NDArray[np.float64]]:
-    """The datasets of a file by name, those of its groups left out."""
+    """The datasets at the top of a file by name, without the datasets of groups."""
     h5py = _h5py(file)
     try:
         with h5py.File(file, "r") as stored:
@@ -39,8 +39,8 @@ def read(file: str | os.PathLike[str]) -> dict[str, npt.NDArray[np.float64]]:
 
 
 def write(file: str | os.PathLike[str], fields: Mapping[str, npt.NDArray[np.float64]]) -> None:
-    """A dataset for each field, with the cells that have pressure, as the library writes them. A file that was there stays
-    whole until the new one is."""
+    """A dataset for each field, with the cells that have pressure, as the library writes them. An existing file is replaced only
+    when the new one is complete."""
     h5py = _h5py(file)
     new = Path(f"{os.fspath(file)}.{os.getpid()}.new")
     rows = fields["pressure"] != 0

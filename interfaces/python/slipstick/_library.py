@@ -1,4 +1,4 @@
-"""The shared library behind the package: slipstick.h as ctypes sees it. Arrays are handed over where they lie."""
+"""The shared library behind the package: slipstick.h as ctypes sees it. Arrays are passed without copies."""
 import ctypes
 import os
 import pathlib
@@ -16,7 +16,7 @@ PROGRAM = _NATIVE / "slipstick"
 
 
 def has_hdf5() -> bool:
-    """Whether HDF5's library came with the package."""
+    """Whether the package contains the HDF5 library."""
     return (_NATIVE / "libslipstick_hdf5.so").exists()
 
 
@@ -71,7 +71,7 @@ def function(name: str) -> Any:
 
 
 def text(name: str, *arguments: Any) -> str:
-    """What the C function slipstick_NAME says."""
+    """The text that the C function slipstick_NAME returns."""
     said: bytes = function(name)(*arguments)
     return said.decode(errors="replace")
 
@@ -81,7 +81,7 @@ def message() -> str:
 
 
 def checked(status: int) -> int:
-    """The status, unless there is nothing behind it: then the exception that it is in Python."""
+    """Returns the status if there is a result; otherwise raises the corresponding exception."""
     if status in (OK, NOT_CONVERGED):
         return status
     if status == BAD_INPUT:
@@ -94,7 +94,7 @@ def checked(status: int) -> int:
 
 
 def doubles(values: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """As C has them. A copy is made only where they are not yet."""
+    """The numbers as an array for C; copied only if necessary."""
     return np.asarray(values, dtype=np.float64, order="C")
 
 
@@ -103,7 +103,7 @@ def address(array: npt.NDArray[Any]) -> int:
 
 
 def encoded(text: str) -> bytes:
-    """As C has it: a text that holds a zero would end there."""
+    """The text for C; a zero byte would end it there."""
     if "\0" in text:
         raise InputError(f"{text!r}: a text with a zero byte in it; allowed: one without")
     return os.fsencode(text)

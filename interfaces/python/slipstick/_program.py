@@ -1,4 +1,4 @@
-"""The program that comes with the package: what judges (check, gate, study) is done by it, and its JSON is the result."""
+"""The program of the package runs check, gate and study; the result is its JSON."""
 from __future__ import annotations
 
 import json
@@ -17,9 +17,8 @@ _MESSAGE = "slipstick: "
 
 
 def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], object] | None = None) -> dict[str, Any]:
-    """The result of a command that could judge, good or bad. progress is called with each line that says how far it is.
-    Ctrl-C ends the program too, and on Linux so does whatever ends this process; what it finished stays where it keeps
-    it."""
+    """Runs a command and returns its result, good or bad; raises an error if it could not judge. progress is called with each
+    line of progress. Ctrl-C ends the program too, and so does, on Linux, the end of this process; finished solves stay on disk."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "result.json"
         process = subprocess.Popen(
@@ -35,7 +34,7 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
                     progress(line.strip())
             code = process.wait()
         except BaseException:
-            process.terminate()  # as Ctrl-C, which a shell's background job ignores
+            process.terminate()  # like Ctrl-C; background jobs of a shell ignore SIGINT
             process.wait()
             raise
         finally:

@@ -1,4 +1,4 @@
-"""Scenes as Python has them: the name of a file, text (TOML), or a dict."""
+"""Scenes in Python: the name of a file, text (TOML), or a dict."""
 from __future__ import annotations
 
 import os
@@ -10,12 +10,12 @@ import numpy as np
 
 from .errors import InputError
 
-#: A str with a line break in it is text, any other one the name of a file.
+#: A str with a line break is text; any other str is the name of a file.
 Scene = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 
 def toml_value(value: Any) -> str:
-    """A value as TOML has it.
+    """A value in TOML.
 
     >>> print(toml_value([True, 2, 1e-3, float("inf"), "a", {"b": np.arange(2)}]))
     [true, 2, 0.001, inf, "a", {b = [0, 1]}]
@@ -63,7 +63,7 @@ def toml_text(scene: Mapping[str, Any]) -> str:
 
 
 def text_of(scene: Scene) -> tuple[str | None, str]:
-    """A scene's text, None where it is a file, and the name under which messages speak of it."""
+    """A scene's text (None if it is a file), and its name in messages."""
     if isinstance(scene, Mapping):
         return toml_text(scene), "scene"
     if isinstance(scene, str) and "\n" in scene:
@@ -72,7 +72,7 @@ def text_of(scene: Scene) -> tuple[str | None, str]:
 
 
 def assignments(overrides: Mapping[str, Any]) -> list[str]:
-    """Keyword arguments as --set has them: load__moment_ratio=0.5 is "load.moment_ratio=0.5".
+    """Keyword arguments in the form of --set: load__moment_ratio=0.5 is "load.moment_ratio=0.5".
 
     >>> assignments({"load__moment_ratio": 0.5, "grid.cells": (48, 48)})
     ['load.moment_ratio=0.5', 'grid.cells=[48, 48]']

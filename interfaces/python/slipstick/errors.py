@@ -1,8 +1,8 @@
-"""What goes wrong, in the words of the program: docs/reference/messages.md has cause and cure of each message."""
+"""Errors with the messages of the program; docs/reference/messages.md gives cause and cure of each."""
 
 
 class InputError(ValueError):
-    """What the caller got wrong. The message names file, key and value, and what is allowed."""
+    """A mistake in the input. The message names file, key, value and allowed values."""
 
 
 class Failure(RuntimeError):
@@ -10,4 +10,4 @@ class Failure(RuntimeError):
 
 
 class NotConvergedWarning(UserWarning):
-    """A solution that did not reach what was asked of it: its `message` says why."""
+    """A solution that did not reach its tolerance or accuracy; its `message` gives the reason."""

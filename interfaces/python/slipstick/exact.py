@@ -1,19 +1,19 @@
 """Exact states of an axisymmetric contact in torsion, over arrays and without a grid.
 
-Everything is dimensionless: lengths over the contact radius a, moments over mu W a (friction, normal load, radius), the
-twist as G a^2 phi/(mu W) with 1/G = 1/G_1 + 1/G_2 of the two bodies, tractions over mu p0, pressures over p0, energies
-over (mu W)^2/(G a). `contact_of` gives a and p0 in SI units.
+All numbers are dimensionless. Lengths are divided by the contact radius a, moments by mu W a (friction, normal load, radius),
+tractions by mu p0, pressures by p0, energies by (mu W)^2/(G a). The twist is G a^2 phi/(mu W), with 1/G = 1/G_1 + 1/G_2 of the
+two bodies. `contact_of` gives a and p0 in SI units.
 
-A profile is the contact's pressure: "hertz" (sphere), "cone", "flat_punch", "power:N" (gap like r^N), "rounded_punch:B"
+A profile describes the contact's pressure: "hertz" (sphere), "cone", "flat_punch", "power:N" (gap like r^N), "rounded_punch:B"
 (flat out to B = b/a), "file:P.csv" (columns radius, pressure).
 
-A state is named by exactly one of
+A state is given by exactly one of
     moment_ratio      M/M_lim, in [0, 1)
-    moment_deficit    1 - M/M_lim, in (0, 1]: the digits near the limit
+    moment_deficit    1 - M/M_lim, in (0, 1]: accurate near the limit
     stick_ratio       a_s/a, in (0, 1]
-    stick_complement  1 - a_s/a, in [0, 1): the digits of a narrow slip ring
+    stick_complement  1 - a_s/a, in [0, 1): accurate for a narrow slip ring
     twist             G a^2 phi/(mu W), from 0
-which may be numbers or arrays; a result has the argument's shape. Out of range, or NaN, is an InputError.
+as a number or an array; the result has the argument's shape. A value that is NaN or out of range raises InputError.
 """
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _WANTED = (*_GIVEN, "moment", "tangent_stiffness", "energy_lost")
 
 
 def _named(names: dict[str, Values]) -> tuple[int, npt.ArrayLike]:
-    """Which quantity names the state, and its values."""
+    """The given quantity of the state, and its values."""
     given = [(name, values) for name, values in names.items() if values is not None]
     if len(given) != 1:
         raise InputError(f"{len(given)} of {', '.join(names)} are given; allowed: exactly one")
@@ -80,9 +80,9 @@ def moment_ratio(twist: Values = None, *, moment_deficit: Values = None, stick_r
 
 def moment(twist: Values = None, *, moment_ratio: Values = None, moment_deficit: Values = None,
            stick_ratio: Values = None, stick_complement: Values = None, profile: str = "hertz") -> Any:
-    """The moment M/(mu W a): the contact's law, for codes that ask for the moment at a twist.
+    """The moment M/(mu W a) as a function of the twist, or of another quantity of the state.
 
-    At rest it is that of a bonded contact, 16/3 times the twist:
+    For small twists the contact is bonded, and the moment is 16/3 times the twist:
 
     >>> round(moment(1e-9) / 1e-9, 6)
     5.333333
@@ -104,7 +104,7 @@ def stick_ratio(moment_ratio: Values = None, *, moment_deficit: Values = None, s
 
 def tangent_stiffness(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
                       stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
-    """(dM/dphi)/(G a^3) on going on: 16/3 (a_s/a)^3."""
+    """The tangent stiffness (dM/dphi)/(G a^3) of further loading: 16/3 (a_s/a)^3."""
     return _find("tangent_stiffness", profile, {
         "moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
         "stick_complement": stick_complement, "twist": twist})
@@ -114,7 +114,7 @@ def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, s
                 stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
     """Energy lost in a cycle between M and -M, over (mu W)^2/(G a).
 
-    For small moments that of a sphere goes like (3/16) M^3:
+    For small moments it is (3/16) M^3 for a sphere:
 
     >>> m = 1e-4
     >>> round(energy_lost(m) / (3 / 16 * moment(moment_ratio=m)**3), 3)
@@ -128,7 +128,7 @@ def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, s
 def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
            stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> np.recarray:
     """All numbers of first loading at once, as an array of records with moment_ratio, moment_deficit, stick_ratio,
-    stick_complement, twist, moment and tangent_stiffness; pandas.DataFrame takes it as it is.
+    stick_complement, twist, moment and tangent_stiffness; pandas.DataFrame accepts it.
 
     >>> found = states([0.1, 0.9])
     >>> bool(found.moment_ratio[1] == 0.9 and found.twist[1] > found.twist[0])
@@ -146,10 +146,10 @@ def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_
 def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment_deficit: float | None = None,
              stick_ratio: float | None = None, stick_complement: float | None = None, twist: float | None = None,
              history: Sequence[float] | None = None, profile: str = "hertz") -> Any:
-    """The traction q/(mu p0) around the axis at radii r/a in [0, 1]: of one state of first loading, or signed, after a
-    `history` of moments M/M_lim.
+    """The traction q/(mu p0) around the axis at radii r/a in [0, 1]: for one state of first loading, or with a sign
+    after a `history` of moments M/M_lim.
 
-    Beyond the stick radius it is the pressure, and a full reversal turns it round:
+    Beyond the stick radius it equals the pressure, and a full reversal changes its sign:
 
     >>> bool(traction(0.8, 0.9) == pressure(0.8) and traction(0.8, history=[0.9, -0.9]) == -pressure(0.8))
     True
@@ -173,7 +173,7 @@ def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment
 
 
 def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
-    """The pressure p/p0 at radii r/a in [0, 1]; infinite where the profile's is.
+    """The pressure p/p0 at radii r/a in [0, 1]; infinite at radii where the profile is infinite.
 
     >>> pressure([0.0, 0.6, 1.0])
     array([1. , 0.8, 0. ])
@@ -186,9 +186,9 @@ def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
 
 
 def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray:
-    """The states after each of the moments M/M_lim in (-1, 1) that a contact under constant normal load goes through,
-    from none: moment_ratio, moment, twist, stick_ratio (front of the newest slip), tangent_stiffness, dissipated (since the first
-    loading began: dissipated_total of a solve, whose dissipated is that of one step).
+    """The states of a contact under constant normal load at given moments M/M_lim in (-1, 1), starting from zero: moment_ratio,
+    moment, twist, stick_ratio (front of the newest slip), tangent_stiffness, dissipated (total since the first loading, like
+    dissipated_total of a solve; dissipated of a solve belongs to one step).
 
     >>> loop = history([0.5, -0.5, 0.5])
     >>> bool(abs(loop.twist[1] + loop.twist[0]) < 1e-15 and loop.dissipated[2] > loop.dissipated[1])
@@ -202,7 +202,7 @@ def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray
 
 
 def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: str = "hertz") -> np.recarray:
-    """The curve through these turning points M/M_lim, for drawing: the unloaded state, and this many on each branch.
+    """The curve through these turning points M/M_lim, for drawing: the unloaded state and points_per_branch points a branch.
 
     >>> len(curve([0.9, -0.9], points_per_branch=10))
     21
@@ -219,11 +219,11 @@ def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: s
 
 @dataclass(frozen=True)
 class Profile:
-    """What a profile needs beside its shape."""
+    """Dimensionless constants of a profile."""
 
     load: float  #: W/(p0 a^2)
     moment_limit: float  #: M_lim/(mu W a)
-    full_stick: float  #: M/M_lim up to which nothing slips
+    full_stick: float  #: M/M_lim below which nothing slips
 
 
 def profile_named(profile: str = "hertz") -> Profile:
@@ -239,7 +239,7 @@ def profile_named(profile: str = "hertz") -> Profile:
 
 @dataclass(frozen=True)
 class Contact:
-    """The contact that a normal load makes, in SI units."""
+    """The contact under a normal load, in SI units."""
 
     radius: float  #: a, m
     approach: float  #: m

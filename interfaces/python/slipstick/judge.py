@@ -1,4 +1,4 @@
-"""What the program does: it judges fields of other programs, gates and studies, and more."""
+"""Functions that start the program: it judges fields of other programs, gates and studies."""
 from __future__ import annotations
 
 import json
@@ -24,7 +24,7 @@ Progress = Optional[Callable[[str], object]]
 
 
 class Check(Result):
-    """A verdict on a field: `verdict` ("good" or "bad"), `why` in one sentence, and each error that it rests on."""
+    """A verdict on a field: `verdict` ("good" or "bad"), `why` in one sentence, and each error with its tolerance."""
 
     @property
     def good(self) -> bool:
@@ -32,8 +32,8 @@ class Check(Result):
 
 
 class Gates(Result):
-    """What gates say: `gates`, a row each, `counts` by outcome, and whether all hold: none that failed was expected to
-    hold, and none was refused."""
+    """Verdicts of gates: `gates` with a row for each, `counts` by outcome, and `passed`: no gate failed unexpectedly, and none was
+    refused."""
 
     @property
     def passed(self) -> bool:
@@ -41,7 +41,7 @@ class Gates(Result):
 
     @property
     def why(self) -> str:
-        """What speaks against them, a line each; empty where all hold."""
+        """One line for each gate that does not pass; empty if all pass."""
         against = ("failed", "passed unexpectedly", "refused")
         return "\n".join(f"{gate.id}: {gate.why}" for gate in self["gates"] if gate.outcome in against)
 
@@ -55,7 +55,7 @@ class Study(Result):
 
 @contextmanager
 def _files(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike] | None = None) -> Iterator[list[str]]:
-    """The names of files that hold the scene and the field, made for as long as they are needed."""
+    """The names of temporary files with the scene and the field."""
     with tempfile.TemporaryDirectory() as folder:
         text, name = text_of(scene)
         if text is not None:
@@ -93,15 +93,14 @@ def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
 def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: float | None = None,
           tolerance: float | None = None, discrete: bool = False, strict: bool = False, pressure_given: bool = False,
           **overrides: Any) -> Check:
-    """Judges tractions that any program computed for a scene: docs/guides/verify-your-solver.md explains each number.
+    """Judges tractions from any program; docs/guides/verify-your-solver.md explains each number.
 
-    field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
-    fields of a Solution are such arrays. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N),
-    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported (`twist_angle` of a
-    result, not its normalised `twist`). tolerance: the error that is
-    allowed, instead of the one derived from the mesh. pressure_given: the pressure is not judged. discrete: good only if
-    it solves its own grid's problem. strict: good only in the scene's own units and signs. overrides as of solve().
-    Relative paths in a scene that is no file begin nowhere: write them in full.
+    field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell, like the
+    fields of a Solution. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N), displacement (m), and
+    optionally time, normal_load. twist: the reported twist in rad (`twist_angle` of a result, not its normalised `twist`).
+    tolerance: the allowed error, instead of the tolerance of the mesh. pressure_given: the pressure is not judged. discrete:
+    good only if the field solves the discrete problem of its grid. strict: good only in the scene's own units and signs.
+    overrides: as in solve(). If the scene is not a file, write paths in it as absolute paths.
     """
     options: list[str] = []
     if twist is not None:
@@ -118,9 +117,9 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
          results: Path_ | None = None, jobs: int = 0, progress: Progress = None) -> Gates:
     """Runs gates: numbers with bounds that they must keep (docs/guides/gate-your-ci.md).
 
-    files: gate files. only: the ids of those to run. output: a folder that keeps finished solves (left out: none does).
-    results: the folder of the result files that gates name. jobs: solves at a time, 0: one a processor. Throws
-    InputError where a file is missing; a gate that cannot be judged is one of the result, `refused`.
+    files: gate files. only: ids of the gates to run. output: a folder that stores finished solves (default: they are not
+    stored). results: the folder of the result files that gates name. jobs: parallel solves, 0: one a processor. Raises
+    InputError if a file is missing; a gate that cannot be judged has the outcome `refused`.
     """
     names = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if missing := [os.fspath(name) for name in names if not os.path.isfile(name)]:
@@ -134,17 +133,17 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
 
 def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, progress: Progress = None,
           **overrides: Any) -> Study:
-    """Solves a scene on many meshes or to many tolerances, and judges orders and errors (docs/reference/study.md).
+    """Solves a scene on many meshes or with many tolerances, and judges orders and errors (docs/reference/study.md).
 
-    file: a study file. output: a folder that keeps finished solves, from which the same call goes on (left out: none
-    does). jobs: solves at a time, 0: one a processor. overrides replace keys of the scene, as of solve().
+    file: a study file. output: a folder that stores finished solves, which the same call uses again (default: they are not
+    stored). jobs: parallel solves, 0: one a processor. overrides: replace keys of the scene, as in solve().
     """
     with _kept(output) as folder:
         return Study(run("study", file, *_set(overrides), "--output", folder, "--jobs", str(jobs), progress=progress))
 
 
 def command(name: str, *words: Path_, progress: Progress = None) -> Result:
-    """Any command of the program with its options, as on the command line (docs/reference/commands.md), and its result.
+    """Runs any command of the program with its options (docs/reference/commands.md), and returns its result.
 
     >>> command("exact", "--profile", "cone", "--stick-ratio", "1").moment_ratio
     0.0

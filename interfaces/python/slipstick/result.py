@@ -1,4 +1,4 @@
-"""Results as the program writes them (docs/reference/results.md), with attributes."""
+"""Results of the program (docs/reference/results.md), with attributes."""
 from __future__ import annotations
 
 import copy
@@ -17,7 +17,7 @@ def _wrapped(value: Any) -> Any:
 
 class Result(Mapping[str, Any]):
     """A JSON object: result.certificate.gap is result["certificate"]["gap"]. A number that does not exist is None, and
-    `reason` says why. SI units, angles in rad.
+    `reason` gives the reason. SI units, angles in rad.
 
     >>> result = Result({"twist": 0.1, "certificate": {"gap": None, "gap_reason": "nothing slips"}})
     >>> result.twist, result.certificate.gap, result.certificate.reason("gap")
@@ -56,13 +56,13 @@ class Result(Mapping[str, Any]):
         return f"<table>{rows}</table>"
 
     def _numbers(self) -> list[tuple[str, Any]]:
-        """What fits on a line: no lists of tables, no tables."""
+        """The values that fit on a line: no tables and no lists of tables."""
         return [(key, value) for key, value in self._data.items()
                 if not isinstance(value, dict) and not key.endswith("_reason")
                 and not (isinstance(value, list) and value and isinstance(value[0], (dict, list)))]
 
     def reason(self, key: str) -> str | None:
-        """Why there is no such number; None where there is one."""
+        """The reason why a number is missing; None if it exists."""
         return self._data.get(f"{key}_reason")
 
     def to_dict(self) -> dict[str, Any]:
@@ -70,8 +70,8 @@ class Result(Mapping[str, Any]):
         return copy.deepcopy(self._data)
 
     def to_frame(self, key: str | None = None) -> Any:
-        """A list of the result (its only one, or that under the key: steps, rows, gates) as a pandas.DataFrame, one row
-        each; names of nested numbers are joined by dots. Needs pandas."""
+        """A list of the result (the only one, or the one with this key: steps, rows, gates) as a pandas.DataFrame with one row
+        for each entry; names of nested numbers are joined by dots. Needs pandas."""
         import pandas
 
         lists = {name: value for name, value in self._data.items()

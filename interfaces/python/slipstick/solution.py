@@ -21,12 +21,11 @@ from .result import Result
 
 
 class _Handle:
-    """A solution of the library, freed with the last one that holds it. In another process, or of a deep copy, there is
-    none."""
+    """A solution of the library, freed with its last owner. In another process, or after a deep copy, there is none."""
 
     def __init__(self, pointer: int) -> None:
         self.pointer = pointer
-        weakref.finalize(self, _library.function("solution_free"), pointer).atexit = False  # others may read until then
+        weakref.finalize(self, _library.function("solution_free"), pointer).atexit = False  # readers may need it until then
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(None), ()
@@ -48,9 +47,9 @@ class _Handle:
 
 class Fields(Mapping[str, npt.NDArray[np.float64]]):
     """The fields of a solution by name: x1, x2 (m), pressure, q1, q2 (Pa, on the lower body), slip1, slip2 (m, of the
-    last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened, q1_sharpened, q2_sharpened (Pa, with square-root
-    edges read off), q1_exact, q2_exact (where known). Arrays of cells[0] x cells[1] that lie where the library has them,
-    not to be written to; each keeps the solution alive."""
+    last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened, q1_sharpened, q2_sharpened (Pa, corrected
+    near square-root edges), q1_exact, q2_exact (if known). Arrays of cells[0] x cells[1] in the library's memory, read-only;
+    each keeps the solution alive."""
 
     def __init__(self, arrays: dict[str, npt.NDArray[np.float64]]) -> None:
         self._arrays = arrays
@@ -71,25 +70,25 @@ class Fields(Mapping[str, npt.NDArray[np.float64]]):
 
 
 class Solution(Result):
-    """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text. Pickled
-    or copied it takes them along; only write() stays with the process that solved."""
+    """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text. A pickled or
+    copied solution contains them; only write() needs the process that solved."""
 
     def __init__(self, pointer: int, message: str) -> None:
         self._handle: _Handle | None = _Handle(pointer)
         super().__init__(json.loads(_library.text("solution_json", pointer)))
         self.message = message
-        """Why it is not to be trusted; empty where it converged and reached the accuracy asked for."""
+        """The reason why it cannot be trusted; empty if it converged and reached the requested accuracy."""
         self.fields = self._handle.fields()
         self.text = _library.text("solution_text", pointer)
         """The result as the program prints it."""
 
     @property
     def converged(self) -> bool:
-        """Whether it is to be trusted."""
+        """Whether the solve reached its tolerance and accuracy."""
         return not self.message and self["status"] == "converged"
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes all fields where there is pressure: .csv, .h5 or .vti."""
+        """Writes all fields of the cells with pressure: .csv, .h5 or .vti."""
         if self._handle is None:
             raise InputError("write: a solution that was pickled or copied has arrays, but no files of them; allowed: the one "
                              "that solve() returned, in its process")
@@ -99,7 +98,7 @@ class Solution(Result):
         _library.checked(_library.function("solution_write")(self._handle.pointer, _library.encoded(os.fspath(file))))
 
     def fields_frame(self) -> Any:
-        """The fields where there is pressure as a pandas.DataFrame, one row a cell. Needs pandas."""
+        """The fields of the cells with pressure as a pandas.DataFrame, one row a cell. Needs pandas."""
         import pandas
 
         frame = pandas.DataFrame({name: field.ravel() for name, field in self.fields.items()})
@@ -107,7 +106,7 @@ class Solution(Result):
 
 
 class _Progress:
-    """What the library calls. An exception must not cross it: it waits, and the solve stops."""
+    """The callback of the library. An exception must not cross the library: it is stored, and the solve stops."""
 
     def __init__(self, progress: Callable[[int, float], object] | None) -> None:
         self.progress = progress
@@ -130,11 +129,11 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
           **overrides: Any) -> Solution:
     """Solves a scene: the name of its file, its text (a str of several lines) or a dict of its tables.
 
-    overrides replace keys of the scene, with two underscores for the dot: load__moment_ratio=0.5. accuracy asks for a
-    relative error of the twist; cells, tolerance and model are then chosen. progress(iteration, change) is called now and
-    then; what it raises ends the solve, and so does Ctrl-C. Other threads run on meanwhile, and may solve too.
+    overrides: replace keys of the scene, with two underscores for the dot: load__moment_ratio=0.5. accuracy: the relative
+    error of the twist to reach; the solver then chooses cells, tolerance and model. progress(iteration, change): called
+    during the solve; an exception from it ends the solve, and so does Ctrl-C. Other threads may run and solve meanwhile.
 
-    Raises InputError for what the scene got wrong; a solution that did not converge, or not to the accuracy, comes with a
+    Raises InputError for a mistake in the scene. If the solution did not converge, or did not reach the accuracy, there is a
     NotConvergedWarning.
 
     >>> sphere = {"upper": {"shape": "sphere", "radius": 0.018, "young_modulus": 210e9, "poisson_ratio": 0.3},
@@ -151,7 +150,7 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
     called = _Progress(progress)
     pointer = ctypes.c_void_p()
     in_main = threading.current_thread() is threading.main_thread()
-    # A handler that raised could do so inside the library's callback, where Python drops it: this one notes it.
+    # Python drops an exception that a handler raises inside the library's callback, so this handler stores it.
     before = signal.signal(signal.SIGINT, called.interrupt) if in_main else None
     try:
         status = _library.function("solve")(

@@ -1,4 +1,4 @@
-"""Every example in the package's doc comments gives what it says."""
+"""Every example in the package's doc comments gives the shown output."""
 import doctest
 import importlib
 import pkgutil

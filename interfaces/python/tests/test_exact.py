@@ -60,7 +60,7 @@ class ArraysTest(unittest.TestCase):
         twists = exact.twist(values)
         self.assertEqual(twists.shape, (3, 4))
         self.assertEqual(exact.states(values).shape, (3, 4))
-        np.testing.assert_array_equal(exact.twist(values.T), twists.T)  # what does not lie as C has it
+        np.testing.assert_array_equal(exact.twist(values.T), twists.T)  # arrays with another memory layout
         np.testing.assert_array_equal(exact.twist(values[::2, ::3]), twists[::2, ::3])
         np.testing.assert_array_equal(exact.twist(values.tolist()), twists)
         self.assertEqual(exact.twist(values.astype(np.float32)).dtype, np.float64)

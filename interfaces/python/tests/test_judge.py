@@ -1,4 +1,4 @@
-"""slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
+"""slipstick.check, gate and study: verdicts that follow from theory, and errors."""
 import importlib.util
 import os
 import signal
@@ -82,7 +82,7 @@ class CheckTest(unittest.TestCase):
             self.assertFalse(by_h5py.good)
 
     def test_loops(self):
-        """The exact loop in the scene's units is good; that of another stiffness is not."""
+        """The exact loop in the scene's units is good; a loop with another stiffness is not."""
         exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
         curve = slipstick.exact.curve([0.5, -0.5, 0.5], 40)
         loop = {"moment": curve.moment * exact.moment / slipstick.exact.moment(moment_ratio=0.5),
@@ -149,7 +149,7 @@ class FilesTest(unittest.TestCase):
 
     def test_a_study_goes_on_after_ctrl_c(self):
         file, kept = self.folder / "study.toml", self.folder / "kept"
-        cells = list(range(16, 272, 16))  # for minutes, were it not stopped
+        cells = list(range(16, 272, 16))  # runs for minutes unless it is stopped
         file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells}\nshifts = 4\n')
 
         ended = threading.Event()
@@ -167,7 +167,7 @@ class FilesTest(unittest.TestCase):
         finally:
             ended.set()
             striker.join()
-        with self.assertRaises(ChildProcessError):  # nothing is left running
+        with self.assertRaises(ChildProcessError):  # no process is left
             os.waitpid(-1, os.WNOHANG)
         file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells[:3]}\nshifts = 1\n')
         said = []
@@ -199,7 +199,7 @@ class FilesTest(unittest.TestCase):
             time.sleep(0.01)
         parent.kill()
         parent.wait()
-        end = time.monotonic() + 120  # longer than it takes on any machine
+        end = time.monotonic() + 120  # longer than on any machine
         while processes() and time.monotonic() < end:
             time.sleep(0.01)
         self.assertEqual(processes(), [])

@@ -1,5 +1,5 @@
-"""Runs the cells of every notebook in docs/notebooks, each in its order and in one namespace; what they assert holds, and
-each is valid as far as a reader of format 4 asks. (Jupyter is not needed.)"""
+"""Runs the cells of every notebook in docs/notebooks, in their order and in one namespace. Their assertions hold, and
+each notebook is valid in format 4. (Jupyter is not needed.)"""
 import ast
 import json
 import pathlib

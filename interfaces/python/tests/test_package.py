@@ -1,4 +1,4 @@
-"""The package as a whole: it declares C's functions as slipstick.h does, and brings all that it should."""
+"""The package as a whole: its declarations of C functions agree with slipstick.h, and it contains all of its files."""
 import ctypes
 import pathlib
 import re
@@ -14,7 +14,7 @@ HEADER = re.sub(r"/\*.*?\*/", "", (ROOT / "interfaces/c/slipstick.h").read_text(
 
 
 def kind(parameter):
-    """How ctypes has to hand over a parameter of C."""
+    """The ctypes type for a parameter of C."""
     if "*" in parameter or "[" in parameter or "slipstick_progress" in parameter:
         return "pointer"
     return re.match(r"(?:const )?(\w+)", parameter.strip())[1]

@@ -1,4 +1,4 @@
-"""slipstick.solve: facts, fields without copies, progress, Ctrl-C, what goes wrong."""
+"""slipstick.solve: facts, fields without copies, progress, Ctrl-C, errors."""
 import copy
 import gc
 import json
@@ -28,7 +28,7 @@ def solved_at(load):
     return slipstick.solve(SPHERE, load__normal=load)
 
 
-# By ctypes alone: NumPy is not for trapped exceptions. Exact states at their ends, and solves on one thread and on two.
+# This uses only ctypes, since NumPy does not support trapped exceptions. Exact states at their ends, and solves on one thread and on two.
 TRAPPED = """
 import ctypes, sys
 library, libm = ctypes.CDLL(sys.argv[1]), ctypes.CDLL("libm.so.6")
@@ -49,7 +49,7 @@ for threads in (b"solver.threads=1", b"solver.threads=2"):
 assert libm.fegetexcept() & 0x3f == traps, "the caller's traps are as they were"
 """
 
-# What FFTW remembers: plans chosen under other rounding would give later solves other digits.
+# FFTW stores plans; plans chosen under another rounding mode would change the digits of later solves.
 SEEDED = """
 import ctypes, re, slipstick
 from scenes import SPHERE
@@ -86,10 +86,10 @@ def run_script(text, *words):
 
 
 class ProcessTest(unittest.TestCase):
-    """What the library meets in the processes of others."""
+    """The library in processes of other programs."""
 
     def test_a_process_that_forks_while_threads_solve(self):
-        """Each new one solves too, to the same bits."""
+        """Each new process solves too, to the same bits."""
         def twist():
             return slipstick.solve(SPHERE, grid__cells=[24, 24]).twist_angle
 
@@ -106,7 +106,7 @@ class ProcessTest(unittest.TestCase):
             for _ in range(20):
                 process = os.fork()
                 if process == 0:
-                    signal.alarm(120)  # one that waits for a lock of a thread that it does not have
+                    signal.alarm(120)  # a process that waits for the lock of a thread of its parent
                     same = False
                     try:
                         same = twist() == expected and slipstick.solve(SPHERE, solver__rounding_seed=1).converged
@@ -315,7 +315,7 @@ class ProgressTest(unittest.TestCase):
                                   lambda self, *at: watched.append(at) or called(self, *at))
         with watch, self.assertRaisesRegex(ZeroDivisionError, "mine"):
             slipstick.solve(SPHERE, progress=stop)
-        self.assertEqual(len(watched), 1)  # the library does not go on
+        self.assertEqual(len(watched), 1)  # the library stops solving
         self.assertTrue(slipstick.solve(SPHERE).converged)
 
     def test_ctrl_c(self):
@@ -338,14 +338,14 @@ class ProgressTest(unittest.TestCase):
         self.assertIs(signal.getsignal(signal.SIGINT), before)
 
     def test_ctrl_c_while_nothing_is_watched(self):
-        """A long history, and no progress function: the signal ends it all the same, long before its end."""
+        """The signal ends a long history without a progress function, long before its end."""
         scene = {name: part for name, part in SPHERE.items() if name != "load"}
         scene["step"] = [{"normal": 1000.0, "moment_ratio": 0.8}, {"moment_ratio": -0.8}]
         scene["cycles"] = 2000
         before = signal.getsignal(signal.SIGINT)
 
         def strike():
-            while signal.getsignal(signal.SIGINT) is before:  # until the solve has it
+            while signal.getsignal(signal.SIGINT) is before:  # until the solve has started
                 time.sleep(0.01)
             os.kill(os.getpid(), signal.SIGINT)
 
