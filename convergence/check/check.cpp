@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
-#include "convergence/check/examination.hpp"
-#include "convergence/check/verdict.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/make_record.hpp"
 #include "convergence/results/provenance.hpp"
@@ -22,122 +21,138 @@ namespace {
 const std::string kNoNumber = "the exact value is zero or not known";
 const std::string kBroken = "not a number";
 
+/// Numbers of a field, in SI units.
+struct FieldState {
+  explicit FieldState(const Examination& e)
+      : stick(find_stick_front(e.contact.grid, e.contact.friction_bound, e.state.slip,
+                               stick_cells(e.contact))) {
+    const GivenContact& c = e.contact;
+    const double length = c.length_unit;
+    stick.radius *= length;
+    stick.counted_radius *= length;
+    normal_load = c.pressure.sum() * c.newtons();
+    contact_radius = measure_contact_radius(c, c.pressure) * length;
+    moment = c.moment() * c.newton_metres();
+    moment_limit = e.moment_limit() * c.newton_metres();
+    const auto [f1, f2] = c.force();
+    force = {f1 * c.newtons(), f2 * c.newtons()};
+    displacement = {e.state.displacement[0] * length, e.state.displacement[1] * length};
+  }
+
+  solver::StickFront stick;
+  double normal_load, contact_radius, moment, moment_limit;
+  std::array<double, 2> force, displacement;
+};
+
+/// Errors of these numbers, relative to the exact answer and signed.
+struct StateErrors {
+  StateErrors(const FieldState& state, const Examination& e, const Oracle& exact)
+      : twist(relative_error(e.state.twist, exact.twist_angle)),
+        moment(relative_error(state.moment, exact.moment)),
+        stick_radius(relative_error(state.stick.radius, exact.stick_radius)),
+        stick_radius_counted(relative_error(state.stick.counted_radius, exact.stick_radius)),
+        contact_radius(relative_error(state.contact_radius, exact.contact_radius)) {}
+
+  double twist, moment, stick_radius, stick_radius_counted, contact_radius;
+};
+
+std::optional<StateErrors> errors_of(const FieldState& state, const Examination& e) {
+  if (!e.exact.oracle) return std::nullopt;
+  return StateErrors(state, e, *e.exact.oracle);
+}
+
+TractionError traction_error_of(const Examination& e, const Eigen::ArrayXd& traction) {
+  return traction_error(e.contact.stress_unit * traction, *e.exact.oracle, e.contact.grid_in_m());
+}
+
+/// Reason for errors that are missing beside an exact answer.
+const std::string& unknown_text(const Oracle& exact) {
+  return exact.only_normal.empty() ? kNoNumber : exact.only_normal;
+}
+
+Json numbers(std::initializer_list<std::pair<const char*, double>> all, const std::string& reason) {
+  Json json = Json::object();
+  for (const auto& [key, value] : all) set_number(json, key, value, reason);
+  return json;
+}
+
 Json judged_json(const std::vector<Judged>& judged) {
   Json list = Json::array();
   for (const Judged& item : judged) {
     Json& json = list.emplace_back(Json{{"quantity", item.quantity}});
-    set_number(json, "value", item.value, kBroken);
-    set_number(json, "allowed", item.allowed, kBroken);
-    json["holds"] = item.holds();
+    json.update(numbers({{"value", item.value}, {"allowed", item.allowed}}, kBroken));
+    json.update({{"holds", item.holds()}});
   }
   return list;
 }
 
 Json hypothesis_json(const Hypothesis& hypothesis) {
-  Json json{{"name", hypothesis.name}};
-  set_number(json, "gap", hypothesis.gap, kBroken);
-  set_number(json, "stick_gap", hypothesis.stick_gap, kBroken);
-  set_number(json, "twist_angle", hypothesis.twist, kBroken);
+  Json json{{"name", sentence(hypothesis.cause)}};
+  json.update(numbers(
+      {{"gap", hypothesis.gap}, {"stick_gap", hypothesis.stick_gap}, {"twist_angle", hypothesis.twist}},
+      kBroken));
   return json;
 }
 
 Json diagnosis_json(const Diagnosis& diagnosis) {
-  Json json;
-  json["as_it_should_be"] = hypothesis_json(diagnosis.reference_kernel);
-  for (const Hypothesis& hypothesis : diagnosis.tried) json["tried"].push_back(hypothesis_json(hypothesis));
+  Json tried = Json::array();
+  for (const Hypothesis& hypothesis : diagnosis.tried) tried.push_back(hypothesis_json(hypothesis));
+  Json json{{"as_it_should_be", hypothesis_json(diagnosis.reference_kernel)}};
+  if (!tried.empty()) json.update({{"tried", tried}});
   const auto set_found = [&](const char* key, const std::optional<Hypothesis>& found) {
     if (found) {
-      json[key] = found->name;
+      json.update({{key, sentence(found->cause)}});
     } else {
       set_missing(json, key, "none that was tried explains the gap");
     }
   };
   set_found("kernel", diagnosis.kernel);
   set_found("friction", diagnosis.friction);
-  json["stick_area_explained"] = diagnosis.stick_area_explained;
+  json.update({{"stick_area_explained", diagnosis.stick_area_explained}});
   return json;
 }
 
-void add_field(Json& json, const Examination& e) {
-  const solver::Grid& grid = e.read.field.grid;
-  json["cells"] = {grid.n1, grid.n2};
-  json["cell_size"] = {grid.h1, grid.h2};
-  json["centre"] = e.read.field.centre;
-  json["contact_cells"] = (e.contact.pressure > 0.0).count();
-  json["stick_cells"] = (e.stick > 0.0).count();
-  json["conventions"] = e.read.conventions;
-  json["mistakes"] = e.read.mistakes;
-}
-
-/// The stick front in m.
-solver::StickFront stick_front_of(const Examination& e) {
-  const GivenContact& c = e.contact;
-  solver::StickFront front = find_stick_front(c.grid, c.friction_bound, e.state.slip, e.stick);
-  front.radius *= c.length_unit;
-  front.counted_radius *= c.length_unit;
-  return front;
-}
-
-void add_state(Json& json, const Examination& e, const solver::StickFront& stick) {
-  const GivenContact& c = e.contact;
-  json["normal_load"] = c.pressure.sum() * c.newtons();
-  json["contact_radius"] = measure_contact_radius(c, c.pressure) * c.length_unit;
-  set_number(json, "stick_radius", stick.radius, kBroken);
-  if (!stick.why_counted.empty()) json["stick_radius_note"] = stick.why_counted;
-  json["stick_radius_counted"] = stick.counted_radius;
-  json["moment"] = c.moment() * c.newton_metres();
-  json["moment_limit"] = e.moment_limit * c.newton_metres();
-  const auto [f1, f2] = c.force();
-  json["force"] = {f1 * c.newtons(), f2 * c.newtons()};
-  set_number(json, "twist_angle", e.state.twist, kBroken);
-  json["twist_inferred"] = !e.twist_given;
-  set_number(json, "twist_that_fits", e.fitted.twist, kBroken);
-  json["displacement"] = {e.state.displacement[0] * c.length_unit, e.state.displacement[1] * c.length_unit};
-}
-
-void add_errors(Json& json, const Examination& e, const solver::StickFront& stick) {
-  if (!e.exact.oracle) {
+Json errors_json(const FieldState& state, const Examination& e) {
+  Json json = Json::object();
+  const auto errors = errors_of(state, e);
+  if (!errors) {
     for (const char* key : {"twist_error", "moment_error", "stick_radius_error", "contact_radius_error",
-                            "pressure_error", "traction_error"}) {
+                            "pressure_error", "traction_error"})
       set_missing(json, key, e.exact.reason);
-    }
-    return;
+    return json;
   }
-  const GivenContact& c = e.contact;
-  const Oracle& oracle = *e.exact.oracle;
-  const std::string& unknown = oracle.only_normal.empty() ? kNoNumber : oracle.only_normal;
-  const auto set_error = [&](const char* key, double value, double exact) {
-    set_number(json, key, relative_error(value, exact), std::isnan(exact) ? unknown : kNoNumber);
+  const Oracle& exact = *e.exact.oracle;
+  const std::string& unknown = unknown_text(exact);
+  const auto set = [&](const char* key, double error, double of) {
+    set_number(json, key, error, std::isnan(of) ? unknown : kNoNumber);
   };
-  set_error("twist_error", e.state.twist, oracle.twist_angle);
-  set_error("moment_error", c.moment() * c.newton_metres(), oracle.moment);
-  set_error("stick_radius_error", stick.radius, oracle.stick_radius);
-  set_error("stick_radius_counted_error", stick.counted_radius, oracle.stick_radius);
-  set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
-  const solver::Grid grid = c.grid_in_m();
-  json["pressure_error"] =
-      to_json(make_field_error(pressure_error(c.stress_unit * c.pressure, oracle, grid), kNoNumber));
-  json["traction_error"] =
-      to_json(make_traction_error(traction_error(c.stress_unit * c.traction, oracle, grid), unknown));
+  set("twist_error", errors->twist, exact.twist_angle);
+  set("moment_error", errors->moment, exact.moment);
+  set("stick_radius_error", errors->stick_radius, exact.stick_radius);
+  set("stick_radius_counted_error", errors->stick_radius_counted, exact.stick_radius);
+  set("contact_radius_error", errors->contact_radius, exact.contact_radius);
+  const GivenContact& c = e.contact;
+  json.update(
+      {{"pressure_error", to_json(make_field_error(
+                              pressure_error(c.stress_unit * c.pressure, exact, c.grid_in_m()), kNoNumber))},
+       {"traction_error", to_json(make_traction_error(traction_error_of(e, c.traction), unknown))}});
+  return json;
 }
 
 /// The numbers of the right answer on this mesh.
 Json reference_json(const Examination& e) {
   const ReferenceOnGrid& reference = e.reference;
-  Json json;
-  json["mesh_error"] = reference.mesh.deviation.tractions;
-  json["gap"] = reference.mesh.deviation.gap;
-  json["slip_direction"] = reference.mesh.direction;
-  json["twist_angle"] = reference.right.twist;
-  json["constant_cells"] = e.constant_cells;
-  json["loads_scaled_down"] = reference.right.scaled;
-  json["distance"] = e.deviation.tractions;
-  json["noise"] = reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
+  Json json{{"mesh_error", reference.mesh.deviation.tractions},
+            {"gap", reference.mesh.deviation.gap},
+            {"slip_direction", reference.mesh.direction},
+            {"twist_angle", reference.right.twist},
+            {"constant_cells", e.constant_cells},
+            {"loads_scaled_down", reference.right.scaled},
+            {"distance", e.deviation.tractions},
+            {"noise", reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff()}};
   if (e.exact.oracle && e.exact.oracle->shear) {
-    json["traction_error"] =
-        to_json(make_traction_error(traction_error(e.contact.stress_unit * reference.right.traction,
-                                                   *e.exact.oracle, e.contact.grid_in_m()),
-                                    kNoNumber));
+    json.update(
+        {{"traction_error", traction_error_json(traction_error_of(e, reference.right.traction), kNoNumber)}});
   }
   return json;
 }
@@ -145,120 +160,187 @@ Json reference_json(const Examination& e) {
 /// A note without its reason.
 std::string short_note(const std::string& note) { return note.substr(0, note.find(':')); }
 
-/// The verdict's headline; before it mistakes, refused conventions and an unsolved grid's problem, where they
-/// alone make the field bad.
-std::string headline(const Examination& e, const Verdict& verdict, const CheckOptions& options) {
-  if (!verdict.within_mesh()) return verdict.headline;
-  std::vector<std::string> wrong;
-  for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
-  if (options.strict) {
-    for (const std::string& convention : e.read.conventions) wrong.push_back(short_note(convention));
+/// Notes of mistakes, and with --strict of conventions; and the grid's problem if it is unsolved and
+/// --discrete is given: each makes a field bad that is right within its mesh.
+std::vector<std::string> faults_within_mesh(const FieldCheck& check) {
+  const Interpretation& read = check.examination.read;
+  std::vector<std::string> faults;
+  for (const std::string& mistake : read.mistakes) faults.push_back(short_note(mistake));
+  if (check.options.strict) {
+    for (const std::string& convention : read.conventions) faults.push_back(short_note(convention));
   }
-  if (options.discrete && !verdict.discrete.holds()) wrong.push_back(verdict.discrete.wrong);
-  if (wrong.empty()) return verdict.headline;
-  return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.headline);
+  const Judged& discrete = check.verdict.discrete;
+  if (check.options.discrete && !discrete.holds()) faults.push_back(discrete.wrong);
+  return faults;
 }
 
-std::string field_text(const Json& r) {
-  std::string text = text_line("field", r["field"].get<std::string>());
-  text += text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick",
-                                        r["cells"][0].get<int>(), r["cells"][1].get<int>(),
-                                        number_text(r["cell_size"][0]), number_text(r["cell_size"][1]),
-                                        r["contact_cells"].get<int>(), r["stick_cells"].get<int>()));
-  for (const char* key : {"mistakes", "conventions"}) {
-    for (const Json& note : r[key]) text += text_line("note", note.get<std::string>());
+std::string number(double value, const char* format = "{:.6g}") {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+std::string field_text(const FieldCheck& check) {
+  const Examination& e = check.examination;
+  const solver::Grid& grid = e.read.field.grid;
+  std::string text = text_line("field", check.file.string());
+  text +=
+      text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick", grid.n1, grid.n2,
+                                    number(grid.h1), number(grid.h2), (e.contact.pressure > 0.0).count(),
+                                    (stick_cells(e.contact) > 0.0).count()));
+  for (const auto& notes : {e.read.mistakes, e.read.conventions}) {
+    for (const std::string& note : notes) text += text_line("note", note);
   }
   return text;
 }
 
-std::string state_and_errors_text(const Json& r) {
-  const auto error = [&](const char* key) {
+std::string state_text(const Examination& e) {
+  const FieldState state(e);
+  const auto errors = errors_of(state, e);
+  const auto error = [&](double StateErrors::*part) {
     constexpr double kNone = 1e-6;
-    if (!r[key].is_number()) return std::string();
-    const double value = r[key];
+    const double value = errors ? (*errors).*part : NAN;
+    if (!std::isfinite(value)) return std::string();
     return std::abs(value) < kNone ? "   (no error)" : fmt::format("   (error {:+.1e})", value);
   };
-  const std::string inferred = r["twist_inferred"].get<bool>() ? ", which fits the tractions" : "";
-  return text_line("normal load", number_text(r["normal_load"]) + " N") +
+  return text_line("normal load", number(state.normal_load) + " N") +
          text_line("contact radius",
-                   number_text(r["contact_radius"]) + " m" + error("contact_radius_error")) +
-         text_line("moment", fmt::format("{} N m, at most {}{}", number_text(r["moment"]),
-                                         number_text(r["moment_limit"]), error("moment_error"))) +
-         text_line("twist", number_text(r["twist_angle"]) + " rad" + inferred + error("twist_error")) +
-         text_line("stick radius", number_text(r["stick_radius"]) + " m" + error("stick_radius_error"));
+                   number(state.contact_radius) + " m" + error(&StateErrors::contact_radius)) +
+         text_line("moment", fmt::format("{} N m, at most {}{}", number(state.moment),
+                                         number(state.moment_limit), error(&StateErrors::moment))) +
+         text_line("twist", number(e.state.twist) + " rad" +
+                                (e.twist_given ? "" : ", which fits the tractions") +
+                                error(&StateErrors::twist)) +
+         text_line("stick radius", number(state.stick.radius) + " m" + error(&StateErrors::stick_radius));
 }
 
-std::string traction_text(const Json& r) {
-  const Json& traction = r["traction_error"];
-  if (!traction.is_object()) {
-    return text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
-  }
-  if (!traction["l1"].is_number()) return text_line("exact answer", traction["l1_reason"].get<std::string>());
-  const Json& right = r["yardstick"]["traction_error"];
-  return text_line("traction error", fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}",
-                                                 number_text(traction["l1"]), number_text(traction["l2"]),
-                                                 number_text(right["l1"]), number_text(right["l2"])));
+std::string traction_text(const Examination& e) {
+  if (!e.exact.oracle) return text_line("exact answer", "none: " + e.exact.reason);
+  const FieldError found = traction_error_of(e, e.contact.traction).at_centres;
+  if (!std::isfinite(found.l1)) return text_line("exact answer", unknown_text(*e.exact.oracle));
+  const FieldError right = traction_error_of(e, e.reference.right.traction).at_centres;
+  return text_line("traction error",
+                   fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}", number(found.l1),
+                               number(found.l2), number(right.l1), number(right.l2)));
 }
 
-std::string certificate_text(const Json& r) {
-  const Json& certificate = r["certificate"];
-  const Json& direction = r["slip_direction"];
-  const solver::FrictionKind law = friction_law_of(r.value("friction_law", ""));
-  return text_line("certificate",
-                   fmt::format("moment off by {}, |q| above {} by {}", number_text(certificate["moment"]),
-                               solver::bound_text(law), number_text(certificate["friction_bound"]))) +
+std::string certificate_text(const Examination& e) {
+  return text_line(
+             "certificate",
+             fmt::format("moment off by {}, |q| above {} by {}", number(e.certificate.moment),
+                         solver::bound_text(e.scene.friction.kind), number(e.certificate.friction_bound))) +
          text_line("slip direction",
-                   fmt::format("{} degrees off in the mean, {} at most ({})", number_text(direction["mean"]),
-                               number_text(direction["max"]), right_direction_text(law)));
+                   fmt::format("{} degrees off in the mean, {} at most ({}: 0)", number(e.direction.mean),
+                               number(e.direction.max), e.scene.friction.is_coulomb() ? "Coulomb" : "right"));
 }
 
 }  // namespace
 
-Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
-  const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
-  const Verdict verdict = reach_verdict(e, options.tolerance);
-  const solver::StickFront stick = stick_front_of(e);
-  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
-  const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
-  Json json;
-  json["name"] = scene.name;
-  json["field"] = file.string();
-  if (!scene.friction.is_coulomb()) json["friction_law"] = to_string(scene.friction.kind);
-  json["verdict"] = good ? "good" : "bad";
-  json["headline"] = headline(e, verdict, options);
-  json["details"] = verdict.details;
-  json["why"] = json["headline"].get<std::string>() + (verdict.details.empty() ? "" : "; " + verdict.details);
-  json["pressure_given"] = options.pressure_given;
-  json["within_mesh"] = verdict.within_mesh();
-  json["discrete"]["holds"] = verdict.discrete.holds();
-  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds its bound: there is no gap");
-  set_number(json["discrete"], "allowed", verdict.discrete.allowed, kBroken);
-  add_field(json, e);
-  add_state(json, e, stick);
-  add_errors(json, e, stick);
-  json["certificate"] = to_json(make_certificate(e.certificate, kBroken));
-  set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
-  set_number(json["slip_direction"], "max", e.direction.max, kBroken);
-  json["yardstick"] = reference_json(e);
-  json["judged"] = judged_json(verdict.judged);
-  if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
-  json["provenance"] = provenance(std::max(1, scene.threads));
+bool FieldCheck::good() const { return verdict.within_mesh() && faults_within_mesh(*this).empty(); }
+
+std::string FieldCheck::headline() const {
+  for (const Judged& item : verdict.judged) {
+    if (!item.holds() && !item.wrong.empty()) return item.wrong;
+  }
+  const std::string right = right_text(examination, verdict);
+  const std::vector<std::string> faults =
+      verdict.within_mesh() ? faults_within_mesh(*this) : std::vector<std::string>{};
+  if (faults.empty()) return right;
+  return fmt::format("{}; otherwise {}", fmt::join(faults, ", and "), right);
+}
+
+std::string FieldCheck::details() const {
+  std::vector<std::string> right;
+  std::vector<std::string> wrong;
+  const bool lawful = verdict.holds("slip_direction") && verdict.holds("gap") && verdict.holds("tractions") &&
+                      verdict.holds("friction");
+  for (const Judged& item : verdict.judged) {
+    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // that the law holds would mislead
+    const std::string& text = item.holds() ? item.right : item.wrong;
+    if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
+  }
+  std::string causes;
+  for (const Cause& cause : explanation.causes) {
+    causes += causes.empty() ? "likely cause: " : cause.alternative ? ", or " : ", and ";
+    causes += sentence(cause);
+  }
+  const Judged& discrete = verdict.discrete;
+  std::vector<std::string> parts;
+  if (!causes.empty()) parts.push_back(causes);
+  if (wrong.size() > 1) parts.push_back("also wrong: " + listed({wrong.begin() + 1, wrong.end()}));
+  if (!right.empty()) parts.push_back(listed(right));
+  if (verdict.within_mesh() || discrete.holds())
+    parts.push_back(discrete.holds() ? discrete.right : discrete.wrong);
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file,
+                       const CheckOptions& options) {
+  Examination examination = examine(scene, file, {options.twist, options.columns, options.pressure_given});
+  Verdict verdict = reach_verdict(examination, options.tolerance);
+  Explanation explanation = explain(examination, verdict);
+  return {file, options, std::move(examination), std::move(verdict), std::move(explanation)};
+}
+
+Json to_json(const FieldCheck& check) {
+  const Examination& e = check.examination;
+  const solver::Grid& grid = e.read.field.grid;
+  const FieldState state(e);
+  const Judged& discrete = check.verdict.discrete;
+  const std::string headline = check.headline();
+  const std::string details = check.details();
+  Json json{{"name", e.scene.name}, {"field", check.file.string()}};
+  if (!e.scene.friction.is_coulomb()) json.update({{"friction_law", to_string(e.scene.friction.kind)}});
+  Json own_grid{{"holds", discrete.holds()}};
+  set_number(own_grid, "gap", discrete.value, "|q| exceeds its bound: there is no gap");
+  set_number(own_grid, "allowed", discrete.allowed, kBroken);
+  json.update({{"verdict", check.good() ? "good" : "bad"},
+               {"headline", headline},
+               {"details", details},
+               {"why", headline + (details.empty() ? "" : "; " + details)},
+               {"pressure_given", e.pressure_given},
+               {"within_mesh", check.verdict.within_mesh()},
+               {"discrete", own_grid},
+               {"cells", {grid.n1, grid.n2}},
+               {"cell_size", {grid.h1, grid.h2}},
+               {"centre", e.read.field.centre},
+               {"contact_cells", (e.contact.pressure > 0.0).count()},
+               {"stick_cells", (stick_cells(e.contact) > 0.0).count()},
+               {"conventions", e.read.conventions},
+               {"mistakes", e.read.mistakes},
+               {"normal_load", state.normal_load},
+               {"contact_radius", state.contact_radius}});
+  set_number(json, "stick_radius", state.stick.radius, kBroken);
+  if (!state.stick.why_counted.empty()) json.update({{"stick_radius_note", state.stick.why_counted}});
+  json.update({{"stick_radius_counted", state.stick.counted_radius},
+               {"moment", state.moment},
+               {"moment_limit", state.moment_limit},
+               {"force", state.force}});
+  set_number(json, "twist_angle", e.state.twist, kBroken);
+  json.update({{"twist_inferred", !e.twist_given}});
+  set_number(json, "twist_that_fits", e.fitted.twist, kBroken);
+  json.update({{"displacement", state.displacement}});
+  json.update(errors_json(state, e));
+  json.update({{"certificate", certificate_json(e.certificate, kBroken)},
+               {"slip_direction", numbers({{"mean", e.direction.mean}, {"max", e.direction.max}}, kBroken)},
+               {"yardstick", reference_json(e)},
+               {"judged", judged_json(check.verdict.judged)}});
+  if (check.explanation.diagnosis) json.update({{"diagnosis", diagnosis_json(*check.explanation.diagnosis)}});
+  json.update({{"provenance", provenance(std::max(1, e.scene.threads))}});
   return json;
 }
 
-std::string check_text(const Json& r) {
+std::string check_text(const FieldCheck& check) {
   std::vector<std::string> taken;
-  for (const Json& note : r["conventions"]) taken.push_back(short_note(note));
-  std::string text = r["verdict"];
+  for (const std::string& note : check.examination.read.conventions) taken.push_back(short_note(note));
+  std::string text = check.good() ? "good" : "bad";
   if (!taken.empty()) text += fmt::format(" ({})", fmt::join(taken, "; "));
-  text += fmt::format(": {}\n", r["headline"].get<std::string>());
-  if (r["details"] != "") text += fmt::format("  {}\n", r["details"].get<std::string>());
-  text += field_text(r) + state_and_errors_text(r) + traction_text(r) + certificate_text(r);
-  for (const Json& item : r["judged"]) {
-    text +=
-        text_line(item["holds"].get<bool>() ? "holds" : "FAILS",
-                  fmt::format("{:<20} {:>8}   allowed on this grid {}", item["quantity"].get<std::string>(),
-                              number_text(item["value"], "{:.1e}"), number_text(item["allowed"], "{:.1e}")));
+  text += fmt::format(": {}\n", check.headline());
+  if (const std::string details = check.details(); !details.empty()) text += fmt::format("  {}\n", details);
+  const Examination& e = check.examination;
+  text += field_text(check) + state_text(e) + traction_text(e) + certificate_text(e);
+  for (const Judged& item : check.verdict.judged) {
+    text += text_line(item.holds() ? "holds" : "FAILS",
+                      fmt::format("{:<20} {:>8}   allowed on this grid {}", item.quantity,
+                                  number(item.value, "{:.1e}"), number(item.allowed, "{:.1e}")));
   }
   return text;
 }

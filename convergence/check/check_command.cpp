@@ -46,8 +46,10 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
         {.tolerance = request.check.tolerance.value_or(kLoopTolerance), .strict = request.check.strict});
     text << loop_text(result);
   } else {
-    result = check_field(scene, request.field, request.check);
-    text << check_text(result);
+    const FieldCheck check = check_field(scene, request.field, request.check);
+    result = to_json(check);
+    text << check_text(check);
+    return check.good() ? 0 : 1;
   }
   return result["verdict"] == "good" ? 0 : 1;
 }
@@ -84,7 +86,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       "error of loads, twist and tractions that is allowed, instead of the one derived from the mesh; of a "
       "loop's moment, root mean square, instead of 0.01");
   command->add_flag("--pressure-given", request->check.pressure_given,
-                    "take the field's pressure as it is: judge its load and the tractions under it alone");
+                    "take the field's pressure as given: judge only its load, and the tractions under it");
   command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(

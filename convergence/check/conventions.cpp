@@ -1,4 +1,4 @@
-#include "convergence/check/foreign_field.hpp"
+#include "convergence/check/conventions.hpp"
 
 #include <fmt/ranges.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "convergence/check/given_contact.hpp"
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
@@ -244,14 +243,13 @@ struct Orientation {
     if (exchanged) parts.emplace_back("q1 and q2 look exchanged");
     if (is_mistake()) {
       parts.push_back(
-          fmt::format("{} looks reversed alone, as with the rotation field (x2, x1) in place of "
-                      "(-x2, x1)",
+          fmt::format("only {} looks reversed, as with the rotation field (x2, x1) instead of (-x2, x1)",
                       sign1 < 0.0 ? "q1" : "q2"));
     } else if (sign1 < 0.0) {
       parts.emplace_back(
           "tractions look reversed (those on the other body, or a moment that turns the other way)");
     }
-    return fmt::format("{}: only so do they carry the scene's loads", fmt::join(parts, ", and "));
+    return fmt::format("{}: only then do they carry the scene's loads", fmt::join(parts, ", and "));
   }
 };
 

@@ -1,13 +1,19 @@
 #include "convergence/check/deviation.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
-#include "solver/contact/fitted_motion.hpp"
+#include "solver/contact/limit_load.hpp"
+#include "solver/contact/normal_contact.hpp"
+#include "solver/scene/surface.hpp"
+#include "solver/scene/surface_geometry.hpp"
+#include "solver/scene/to_dimensionless.hpp"
+#include "solver/solve.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -18,11 +24,40 @@ using solver::Index;
 
 /// Part of mu p by which rounding may change |q| of a slipping cell.
 constexpr double kExactlyOnCircle = 1e-9;
-/// Cells of a slip ring: a median over fewer would show the ring's edges.
-constexpr std::size_t kMinSlipping = 8;
+/// Cells of the largest grid on which a scene's pressure is solved for comparison: about a minute's work.
+constexpr double kMaxSolvedCells = 2e7;
+
+/// Part of a cell by which the centres of two grids may differ.
+constexpr double kSameCells = 1e-3;
+
+/// The values of a grid at the same places of another one, whose first cell is cell (row, column) of the
+/// first; zero beyond it.
+ArrayXd shifted(const Grid& from, const ArrayXd& values, const Grid& to, Index row, Index column) {
+  ArrayXd result = ArrayXd::Zero(to.cells());
+  for (Index i = std::max(Index{0}, -row); i < std::min(to.n1, from.n1 - row); ++i) {
+    for (Index j = std::max(Index{0}, -column); j < std::min(to.n2, from.n2 - column); ++j) {
+      result[i * to.n2 + j] = values[(i + row) * from.n2 + j + column];
+    }
+  }
+  return result;
+}
+
+/// The values of a grid about the scene's origin on another one about `centre`; none where their cells do not
+/// coincide. Lengths are in the unit of `to`.
+std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid& to,
+                             const std::array<double, 2>& centre) {
+  const double off1 = (centre[0] / to.h1) + 0.5 * static_cast<double>(from.n1 - to.n1);
+  const double off2 = (centre[1] / to.h2) + 0.5 * static_cast<double>(from.n2 - to.n2);
+  const double stretched = std::max(std::abs(from.h1 / to.h1 - 1.0), std::abs(from.h2 / to.h2 - 1.0));
+  if (!(std::max(std::abs(off1 - std::round(off1)), std::abs(off2 - std::round(off2))) <= kSameCells &&
+        stretched * static_cast<double>(std::max(from.n1, from.n2)) <= kSameCells)) {
+    return std::nullopt;
+  }
+  return shifted(from, values, to, std::lround(off1), std::lround(off2));
+}
 
 /// The error of the rigid motion in the mean over the contact, weighted with mu p and relative to the motion
-/// or to the displacements, whichever are larger. Its sign is that of the change in size.
+/// or to the displacements, whichever are larger; positive where the motion is too large.
 double motion_error(const GivenContact& c, const RightAnswer& right, const State& state) {
   const auto size = [&](const ArrayXd& motion) { return (c.friction_bound * solver::norms(motion)).sum(); };
   const auto about_origin = [&](const std::array<double, 2>& displacement, double twist) {
@@ -37,127 +72,101 @@ double motion_error(const GivenContact& c, const RightAnswer& right, const State
          std::max(size(expected), size(c.displacement));
 }
 
-/// |q| over a bound, less 1, in the slip ring, in order; empty where hardly any cell slips.
-std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right,
-                                const Regions& regions) {
-  std::vector<Index> ring = slip_ring(contact, right);
-  std::erase_if(ring, [&](Index cell) { return regions.ring[cell] == 0.0; });
-  if (ring.size() < kMinSlipping) return {};
-  const ArrayXd size = solver::norms(contact.traction);
-  std::vector<double> excess;
-  for (const Index cell : ring) excess.push_back(size[cell] / bound[cell] - 1.0);
-  std::ranges::sort(excess);
-  return excess;
-}
-
-/// The median of an ordered excess, and the spread between its quartiles.
-struct Plateau {
-  explicit Plateau(const std::vector<double>& excess)
-      : middle(excess[excess.size() / 2]),
-        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
-
-  double middle;
-  double spread;
-};
-
-/// The highest value that many of some logarithms have, and how many.
-struct Highest {
-  double value = 0.0;
-  std::size_t cells = 0;
-};
-
-Highest highest_of(std::vector<double>& logs) {
-  constexpr double kFollows = 5e-3;  // relative, of |q|
-  constexpr std::size_t kTop = 50;   // one in 50 cells may lie above
-  if (logs.empty()) return {};
-  const auto top = logs.end() - 1 - static_cast<std::ptrdiff_t>(logs.size() / kTop);
-  std::ranges::nth_element(logs, top);
-  const double value = *top;
-  const auto cells =
-      std::ranges::count_if(logs, [&](double log) { return std::abs(log - value) <= kFollows; });
-  return {value, static_cast<std::size_t>(cells)};
-}
-
-/// The law |q| = k p^n that most cells follow; and how many follow a multiple of the scene's law.
-struct PowerShown {
-  double exponent = 0.0;
-  double coefficient = 0.0;
-  std::size_t cells = 0;
-  double multiple = 1.0;
-  std::size_t cells_of_multiple = 0;
-};
-
-PowerShown power_shown(const GivenContact& c) {
-  constexpr int kExponents = 400;  // from 0 to 4
-  constexpr double kExponentStep = 0.01;
-  std::vector<Index> cells;
-  const ArrayXd size = solver::norms(c.traction);
-  for (Index cell = 0; cell < size.size(); ++cell) {
-    if (size[cell] > 0.0 && c.friction_bound[cell] > 0.0) cells.push_back(cell);
+ArrayXd inner_cells(const Grid& grid, const ArrayXd& pressure) {
+  const auto contact = (pressure > 0.0).cast<double>().eval();
+  ArrayXd inner = contact;
+  for (const Index row : {-1, 0, 1}) {
+    for (const Index column : {-1, 0, 1}) inner *= shifted(grid, contact, grid, row, column);
   }
-  std::vector<double> logs(cells.size());
-  const auto highest_over = [&](const ArrayXd& unit) {
-    std::ranges::transform(cells, logs.begin(),
-                           [&](Index cell) { return std::log(size[cell] / unit[cell]); });
-    return highest_of(logs);
-  };
-  const Highest own = highest_over(c.friction_bound);
-  PowerShown best{.multiple = std::exp(own.value), .cells_of_multiple = own.cells};
-  for (int k = 0; k <= kExponents; ++k) {
-    const double n = k * kExponentStep;
-    const Highest found = highest_over(c.pressure.pow(n));
-    if (found.cells > best.cells) {
-      best.exponent = n;
-      best.coefficient = std::exp(found.value);
-      best.cells = found.cells;
-    }
-  }
-  return best;
-}
-
-OtherFriction multiple_of_law(const GivenContact& c, double factor) {
-  const solver::FrictionLaw& law = c.friction;
-  return {law.is_coulomb() ? fmt::format("a friction coefficient of {:.4g} in place of {:.4g}",
-                                         factor * law.coefficient, law.coefficient)
-                           : fmt::format("a friction {:.4g} times that of the scene's law", factor),
-          factor * c.friction_bound};
-}
-
-/// Another law that the field follows: Coulomb's, Tresca's or a power of the pressure.
-std::optional<OtherFriction> other_law(const GivenContact& c) {
-  constexpr double kSameExponent = 0.03;
-  constexpr double kSameMean = 0.02;
-  const PowerShown shown = power_shown(c);
-  const solver::FrictionLaw& law = c.friction;
-  const auto is = [&](double n) { return std::abs(shown.exponent - n) <= kSameExponent; };
-  if (std::max(shown.cells, shown.cells_of_multiple) < kMinSlipping) return std::nullopt;
-  constexpr double kAsMany = 0.95;  // follow the scene's own law
-  if (static_cast<double>(shown.cells_of_multiple) >= kAsMany * static_cast<double>(shown.cells))
-    return multiple_of_law(c, shown.multiple);
-  const bool same = (law.is_coulomb() && is(1.0)) || (law.kind == solver::FrictionKind::tresca && is(0.0)) ||
-                    (law.kind == solver::FrictionKind::power && is(law.exponent));
-  if (same) return std::nullopt;  // nearly the scene's law: something else is wrong
-  std::string name;
-  if (is(0.0)) {
-    name =
-        fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", shown.coefficient * c.stress_unit);
-    const double mean = law.coefficient * c.pressure.sum() / static_cast<double>((c.pressure > 0.0).count());
-    if (law.is_coulomb() && std::abs(shown.coefficient / mean - 1.0) <= kSameMean)
-      name += " mu times the mean pressure,";
-  } else if (is(1.0)) {
-    name = fmt::format("Coulomb's law, with a coefficient of {:.4g},", shown.coefficient);
-  } else {
-    name = fmt::format("|q| = k p^n with n = {:.2f}", shown.exponent);
-  }
-  return OtherFriction{
-      fmt::format("{} in place of friction_law = \"{}\"{}", name, solver::to_string(law.kind),
-                  law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : ""),
-      (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
+  return inner;
 }
 
 bool is_above_limit(double factor) { return !(factor > 1.0 - kBelowLimit); }
 
 }  // namespace
+
+GivenContact with_fields(const GivenContact& contact, const Grid& grid, ArrayXd pressure, ArrayXd traction) {
+  solver::Dimensionless bodies = contact;
+  bodies.friction = resampled(bodies.friction, bodies.grid, grid);
+  bodies.grid = grid;
+  return {bodies, contact.elasticity, contact.centre, std::move(pressure), std::move(traction)};
+}
+
+ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
+  return shifted(from, values, to, (from.n1 - to.n1) / 2, (from.n2 - to.n2) / 2);
+}
+
+std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                      const solver::Model& model, Grid& grid) {
+  const double unit = contact.length_unit;
+  const Grid in_m = model.grid_in_m();
+  const Grid own{in_m.n1, in_m.n2, in_m.h1 / unit, in_m.h2 / unit};
+  const double half1 = 0.5 * static_cast<double>(own.n1) * own.h1;
+  const double half2 = 0.5 * static_cast<double>(own.n2) * own.h2;
+  const auto larger = [](Index n, double h, double half) {
+    const double missing = half - 0.5 * static_cast<double>(n) * h;
+    return n + 2 * static_cast<Index>(std::clamp(std::ceil(missing / h), 0.0, kMaxSolvedCells));
+  };
+  grid.n1 = larger(grid.n1, grid.h1, half1 + std::abs(contact.centre[0]));
+  grid.n2 = larger(grid.n2, grid.h2, half2 + std::abs(contact.centre[1]));
+  if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxSolvedCells)) return std::nullopt;
+  const bool coupled = scene.coupling == solver::Coupling::full;
+  if (coupled || scene.pressure == solver::PressureModel::file ||
+      std::ranges::any_of(scene.surfaces, solver::is_measured)) {
+    if (!moved(own, ArrayXd::Zero(own.cells()), grid, contact.centre)) return std::nullopt;
+    return moved(own,
+                 coupled ? ArrayXd(solver::solve(scene).pressure / contact.stress_unit)
+                         : solver::find_pressure(scene, model, scene.steps.front()).pressure,
+                 grid, contact.centre);
+  }
+  if (!scene.steps.front().normal) return std::nullopt;
+  std::vector<solver::Surface> surfaces = scene.surfaces;
+  for (solver::Surface& surface : surfaces) {
+    surface = solver::to_dimensionless(std::move(surface), unit);
+    for (std::size_t k = 0; k < 2; ++k) surface.at[k] -= contact.centre[k];
+  }
+  ArrayXd gap = solver::gap_field(surfaces, scene.combine, grid);
+  if (scene.ends_at_grid_edge) {
+    gap = ((solver::cell_x1(grid) + contact.centre[0]).abs() > half1 ||
+           (solver::cell_x2(grid) + contact.centre[1]).abs() > half2)
+              .select(std::numeric_limits<double>::infinity(), gap);
+  }
+  const double total = *scene.steps.front().normal / contact.force_unit() / grid.cell_area();
+  return solver::solve_normal_contact(contact.elasticity, grid, {.gap = gap, .total_pressure = total})
+      .pressure;
+}
+
+KnownMotion known_motion(const GivenContact& contact, const solver::Step& load, std::optional<double> twist) {
+  KnownMotion motion{.twist = twist};
+  const double unit = contact.length_unit;
+  if (load.displacement)
+    motion.displacement = {(*load.displacement)[0] / unit, (*load.displacement)[1] / unit};
+  return motion;
+}
+
+solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load) {
+  solver::TangentialProblem problem{
+      .friction_bound = contact.friction_bound,
+      .initial_displacement = contact.displacement - contact.elastic_displacement,
+      .moment = {},
+      .twist = solver::value_if<solver::Twist>(load.torsion)};
+  if (!contact.pressure_coupling) problem.initial_displacement = {};
+  if (!problem.twist) {
+    problem.moment = (contact.traction * solver::rotation_field(contact.grid)).sum();
+  }
+  // The problem's displacement belongs to the grid's centre. If the twist is free, a centre off the origin
+  // moves by an unknown amount: then the force is imposed instead.
+  const auto& [c1, c2] = contact.centre;
+  const double twist = problem.twist.value_or(0.0);
+  if (load.displacement && (problem.twist || (c1 == 0.0 && c2 == 0.0))) {
+    const double unit = contact.length_unit;
+    problem.displacement = {(*load.displacement)[0] / unit - twist * c2,
+                            (*load.displacement)[1] / unit + twist * c1};
+  } else {
+    problem.force = contact.force();
+  }
+  return problem;
+}
 
 double solved_multiple(double factor) {
   if (is_above_limit(factor)) return kScaledLoads * factor;
@@ -191,25 +200,6 @@ RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& l
           .scaled = is_above_limit(factor)};
 }
 
-State find_state(const GivenContact& c, const solver::Step& load, std::optional<double> twist) {
-  // A gap is not negative only where |q| is within its bound.
-  const ArrayXd bound =
-      c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
-  const RigidMotions motions = rigid_motions(c, load, twist);
-  solver::FittedMotion fitted =
-      solver::fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
-  const auto& found = fitted.coefficients;
-  State state{.twist = twist ? *twist : found[found.size() - 1],
-              .displacement = {},
-              .slip = std::move(fitted.slip),
-              .gap = std::move(fitted.gap)};
-  for (std::size_t k = 0; k < 2; ++k) {
-    state.displacement[k] =
-        load.displacement ? (*load.displacement)[k] / c.length_unit : found[static_cast<Index>(k)];
-  }
-  return state;
-}
-
 std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& right) {
   const ArrayXd size = solver::norms(right.traction);
   const double least = kNextToNothing * contact.friction_bound.maxCoeff();
@@ -221,16 +211,16 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
   return cells;
 }
 
-std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
-                                            const Regions& regions) {
-  constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
-  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right, regions);
-  if (excess.empty()) return std::nullopt;
-  const Plateau shown(excess);
-  if (shown.spread <= kConstant * std::abs(shown.middle)) {
-    return multiple_of_law(contact, 1.0 + shown.middle);
-  }
-  return other_law(contact);
+std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right,
+                                const Regions& regions) {
+  std::vector<Index> ring = slip_ring(contact, right);
+  std::erase_if(ring, [&](Index cell) { return regions.ring[cell] == 0.0; });
+  if (ring.size() < kMinSlipping) return {};
+  const ArrayXd size = solver::norms(contact.traction);
+  std::vector<double> excess;
+  for (const Index cell : ring) excess.push_back(size[cell] / contact.friction_bound[cell] - 1.0);
+  std::ranges::sort(excess);
+  return excess;
 }
 
 Regions find_regions(const GivenContact& contact, const RightAnswer& right) {
@@ -244,7 +234,7 @@ Regions find_regions(const GivenContact& contact, const RightAnswer& right) {
 Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
                          const State& fitted, const Regions& regions) {
   const double moment = (right.traction * contact.rotation).sum();
-  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right, regions);
+  const std::vector<double> excess = ring_excess(contact, right, regions);
   const ArrayXd off = solver::norms(contact.traction - right.traction);
   const double size = solver::norms(right.traction).sum();
   return {.tractions = off.sum() / size,

@@ -3,17 +3,46 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "convergence/check/given_contact.hpp"
+#include "convergence/exchange/given_contact.hpp"
 #include "solver/contact/certificate.hpp"
+#include "solver/contact/tangential_problem.hpp"
 
 namespace slipstick::convergence {
 
-/// Gap over energy at which an iteration counts as finished. It stands for tractions good to about 1e-3 at
-/// worst.
+/// Gap over energy at which an iteration counts as finished: tractions are then good to about 1e-3 at worst.
 inline constexpr double kIterationGap = 1e-5;
+
+/// Part of the largest mu p. Only the tolerance of the normal contact distinguishes cells that carry less
+/// from empty ones.
+inline constexpr double kNextToNothing = 1e-3;
+
+// ---------------------------------------------------------------- fields on other grids about the same
+// centre
+
+/// The same bodies with another pressure and other tractions, without rounding.
+GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
+                         Eigen::ArrayXd traction);
+
+/// A field on a larger or smaller grid with cells of the same size: continued by zero or cut off. The numbers
+/// of cells along each axis differ by an even number.
+Eigen::ArrayXd resized(const solver::Grid& from, const solver::Grid& to, const Eigen::ArrayXd& values);
+
+/// The pressure of the scene's own normal contact, in the units of `contact`. `grid` is enlarged until it
+/// covers the scene's grid. None without a normal load. Measured surfaces, pressures from files and pressures
+/// that shear changes exist only on the scene's grid: none where its cells and those of `grid` differ.
+std::optional<Eigen::ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                             const solver::Model& model, solver::Grid& grid);
+
+// ---------------------------------------------------------------- the right answer, and the distance from it
+
+/// The motion that a scene imposes on a contact, in the contact's units; and a twist, if one is given.
+KnownMotion known_motion(const GivenContact& contact, const solver::Step& load, std::optional<double> twist);
+
+/// The tangential problem of a contact with this pressure, on its grid: under the motions that the scene
+/// imposes, otherwise under the loads that the tractions carry.
+solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load);
 
 /// The solution of Coulomb's law on a contact's grid with its pressure, under the motions that the scene
 /// imposes, otherwise under the contact's own loads.
@@ -42,19 +71,12 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const solv
 /// Multiplies the loads that a problem imposes.
 void scale_loads(solver::TangentialProblem& problem, double factor);
 
-/// Tractions under a rigid motion: the given twist, or else the motion that Coulomb's law fits best.
-struct State {
-  double twist;                        ///< rad
-  std::array<double, 2> displacement;  ///< about the scene's origin
-  Eigen::ArrayXd slip;                 ///< 2*cells
-  Eigen::ArrayXd gap;                  ///< cells
-};
-State find_state(const GivenContact& contact, const solver::Step& load, std::optional<double> twist);
-
 /// Parts of a contact: a mesh leaves more open where the edge cuts its cells.
 struct Regions {
-  Eigen::ArrayXd inner;  ///< inner_cells()
-  Eigen::ArrayXd ring;   ///< 1 in cells whose friction is judged: inner ones if enough of them slip, else all
+  /// 1 in contact cells all of whose neighbours, also at corners, are in contact: the contact's edge cuts
+  /// none of them. The others carry a part of a traction, which depends on the discretisation.
+  Eigen::ArrayXd inner;
+  Eigen::ArrayXd ring;  ///< 1 in cells whose friction is judged: inner ones if enough of them slip, else all
 };
 Regions find_regions(const GivenContact& contact, const RightAnswer& right);
 
@@ -83,20 +105,12 @@ solver::SlipDirection noticeable_direction(const GivenContact& contact, const St
 /// The larger one of each pair of numbers, without sign.
 Deviation larger(const Deviation& a, const Deviation& b);
 
-/// Another friction than the scene's.
-struct OtherFriction {
-  std::string name;
-  Eigen::ArrayXd bound;  ///< cells
-};
-
-/// The friction that a field shows: the scene's law times a factor, unless |q| over its bound varies in half
-/// of the slip ring by more than a part of its distance from 1; or else the law |q| = k p^n that most cells
-/// follow (n = 0: Tresca's, n = 1: Coulomb's), or the multiple of the scene's law, if as many follow it. None
-/// where few cells follow any.
-std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
-                                            const Regions& regions);
-
-/// The cells that slip in the right answer and carry more than next to nothing.
+/// The cells that slip in the right answer and carry more than kNextToNothing.
 std::vector<solver::Index> slip_ring(const GivenContact& contact, const RightAnswer& right);
+
+/// |q|/(mu p) - 1 in the ring's judged cells, in ascending order; empty where fewer than kMinSlipping slip.
+std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right,
+                                const Regions& regions);
+inline constexpr std::size_t kMinSlipping = 8;  ///< a median over fewer cells would show the ring's edges
 
 }  // namespace slipstick::convergence

@@ -1,6 +1,6 @@
 #include "convergence/check/diagnosis.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,58 @@ namespace {
 
 using Eigen::ArrayXd;
 using solver::Index;
+
+/// A mistake in words: {0} is the number found, {1} the expected one, {2} the subject.
+struct Sentence {
+  Mistake mistake;
+  const char* text;
+};
+constexpr Sentence kSentences[] = {
+    {Mistake::none, "as it should be"},
+    {Mistake::cross_kernel_even,
+     "the cross kernel K12, odd in x1 and in x2, is mirrored as an even function"},
+    {Mistake::cross_kernel_missing, "the cross kernel K12 is missing"},
+    {Mistake::cross_kernel_sign,
+     "the cross kernel K12 has the wrong sign, or the rotation field is (x2, x1) instead of (-x2, x1)"},
+    {Mistake::cross_kernel_factor, "the cross kernel K12 is multiplied by {0:.3g}"},
+    {Mistake::kernels_exchanged, "the kernels K11 and K22 are exchanged"},
+    {Mistake::no_poisson_ratio, "Poisson's ratio is taken as zero"},
+    {Mistake::poisson_ratio, "Poisson's ratio is {0:.3g} instead of {1:.3g}"},
+    {Mistake::coupling_missing, "the kernels K13 and K23 are missing"},
+    {Mistake::coupling_sign, "the kernels K13 and K23 have the wrong sign"},
+    {Mistake::coupling_factor, "the kernels K13 and K23 are multiplied by {0:.3g}"},
+    {Mistake::friction_coefficient, "the friction coefficient is {0:.4g} instead of {1:.4g}"},
+    {Mistake::friction_factor, "the friction bound is multiplied by {0:.4g}"},
+    {Mistake::tresca_friction,
+     "the law of friction is Tresca's, with a shear strength of {0:.4g} Pa, instead of {2}"},
+    {Mistake::mean_friction,
+     "the law of friction is Tresca's, with a shear strength of {0:.4g} Pa, mu times the mean pressure, "
+     "instead of {2}"},
+    {Mistake::coulomb_friction,
+     "the law of friction is Coulomb's, with a coefficient of {0:.4g}, instead of {2}"},
+    {Mistake::power_friction, "the law of friction is |q| = k p^n with n = {0:.2f} instead of {2}"},
+    {Mistake::kept_directions, "slipping cells keep a direction that does not oppose their slip"},
+    {Mistake::sampled_singularity,
+     "a pressure with an infinite value is sampled at cell centres instead of averaged over cells"},
+    {Mistake::lost_rows, "the file lacks rows: {0:.0f} cells where the scene has pressure have none"},
+    {Mistake::late_step,
+     "the tractions are one step late: they belong to the step before the last of {0:.0f} equal steps"},
+    {Mistake::late_step_by_twist,
+     "the tractions are one step late: only the twist belongs to the scene's load"},
+    {Mistake::one_compliance, "only one body's compliance is counted"},
+    {Mistake::compliance_factor, "the compliance of the pair is multiplied by {0:.3g}"},
+    {Mistake::radius_factor, "the radius is multiplied by {0:.3g}"},
+    {Mistake::modulus_factor, "the elastic moduli are multiplied by {0:.3g}"},
+    {Mistake::layer_ignored, "the layer on the {2} body is ignored"},
+    {Mistake::layer_exchanged, "the constants of the {2} body and of its layer are exchanged"},
+    {Mistake::layer_on_other_body, "the layer is on the other body"},
+    {Mistake::layer_between_ignored, "the layer between the bodies is ignored"},
+    {Mistake::layer_thickness, "the layer on the {2} body is {0:.3g} m thick instead of {1:.4g} m"},
+    {Mistake::twist_in_degrees, "the twist is in degrees"},
+    {Mistake::twist_in_mrad, "the twist is in mrad"},
+    {Mistake::twist_sign, "the twist has the opposite sign"},
+    {Mistake::normalised_twist, "the twist is the normalised one, G a^2 phi/(mu W)"},
+    {Mistake::other_twist, "the twist does not belong to these tractions, whose own is {0:.6g} rad"}};
 
 /// Pairs of cells in a sum: about a second's work.
 constexpr double kMaxPairs = 1e8;
@@ -46,8 +98,8 @@ ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) 
 }
 
 /// The part of the displacements that cross contraction of the half-spaces makes, over their Poisson
-/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged`
-/// has the part of K22 instead of that of K11 and the reverse.
+/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, in
+/// `exchanged` K11 and K22 have changed places.
 struct Displacements {
   ArrayXd poisson, cross, mirrored, exchanged;
 };
@@ -85,9 +137,9 @@ Displacements sum_displacements(const GivenContact& contact, const Cells& cells)
   return u;
 }
 
-/// An assumption about a program's law: the factor of each part of Displacements, and of others.
+/// A mistake in a program's law: the factor of each part of Displacements, and of others.
 struct Assumption {
-  std::string name;
+  Cause cause;
   double poisson = 1.0;
   double cross = 1.0;
   double mirrored = 0.0;
@@ -105,7 +157,7 @@ class Trial {
         coupled_(contact.pressure_coupling && contact.law->couples()) {
     const Index count = contact.pressure.size();
     const auto here = [&](const ArrayXd& field) { return at(cells_.points, field, count); };
-    const RigidMotions motions = rigid_motions(contact, load, std::nullopt);
+    const RigidMotions motions = rigid_motions(contact, known_motion(contact, load, std::nullopt));
     for (const ArrayXd& motion : motions.free) motions_.push_back(here(motion));
     imposed_ = here(motions.imposed);
     elastic_ = here(contact.elastic_displacement);
@@ -121,7 +173,7 @@ class Trial {
 
   /// The right kernel with another friction.
   Hypothesis of(const OtherFriction& friction) const {
-    return of(Assumption{.name = friction.name}, at(cells_.points, friction.bound, friction.bound.size()));
+    return of(Assumption{.cause = friction.cause}, at(cells_.points, friction.bound, friction.bound.size()));
   }
 
   Hypothesis of(const Assumption& assumption, const ArrayXd& bound) const {
@@ -132,7 +184,7 @@ class Trial {
     const solver::FittedMotion fitted = solver::fit_motion(
         elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_, at_least(bound), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
-    return {assumption.name, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
+    return {assumption.cause, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
             fitted.coefficients[fitted.coefficients.size() - 1]};
   }
 
@@ -141,8 +193,7 @@ class Trial {
     const double times = best_multiple(by_pressure_);
     constexpr double kNear = 0.05;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.name = fmt::format("the kernels K13 and K23 times {:.3g}", times),
-                      .by_pressure = times};
+    return Assumption{.cause = {Mistake::coupling_factor, times}, .by_pressure = times};
   }
 
   /// The kernel K12 times the factor that fits best.
@@ -150,7 +201,7 @@ class Trial {
     const double times = best_multiple(pair_.poisson_compliance * u_.cross);
     constexpr double kNear = 0.1;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.name = fmt::format("the cross kernel K12 times {:.3g}", times), .cross = times};
+    return Assumption{.cause = {Mistake::cross_kernel_factor, times}, .cross = times};
   }
 
   /// The Poisson's ratio that fits best; none where no body has it.
@@ -159,9 +210,7 @@ class Trial {
     const double own = pair_.poisson_compliance / pair_.shear_compliance;
     const double ratio = change * own;
     if (!(ratio > 0.0 && ratio <= 0.5 && own > 0.0)) return std::nullopt;
-    return Assumption{.name = fmt::format("a Poisson's ratio of {:.3g} in place of {:.3g}", ratio, own),
-                      .poisson = change,
-                      .cross = change};
+    return Assumption{.cause = {Mistake::poisson_ratio, ratio, own}, .poisson = change, .cross = change};
   }
 
  private:
@@ -196,20 +245,18 @@ class Trial {
 };
 
 std::vector<Hypothesis> try_kernels(const Trial& trial) {
-  const std::string even = "the cross kernel K12, odd in x1 and in x2, mirrored as an even function";
   std::vector<Assumption> assumptions{
-      {.name = even, .cross = 0.0, .mirrored = -1.0},
-      {.name = even, .cross = 0.0, .mirrored = 1.0},
-      {.name = "the cross kernel K12 missing", .cross = 0.0},
-      {.name = "the cross kernel K12 of the wrong sign, or the rotation field (x2, x1) in place of (-x2, x1)",
-       .cross = -1.0},
-      {.name = "the kernels K11 and K22 exchanged", .poisson = 0.0, .exchanged = 1.0},
-      {.name = "a Poisson's ratio of zero", .poisson = 0.0, .cross = 0.0}};
+      {.cause = {Mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
+      {.cause = {Mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
+      {.cause = {Mistake::cross_kernel_missing}, .cross = 0.0},
+      {.cause = {Mistake::cross_kernel_sign}, .cross = -1.0},
+      {.cause = {Mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
+      {.cause = {Mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
   if (const auto times = trial.best_cross()) assumptions.push_back(*times);
   if (trial.coupled()) {
-    assumptions.push_back({.name = "the kernels K13 and K23 missing", .by_pressure = 0.0});
-    assumptions.push_back({.name = "the kernels K13 and K23 of the wrong sign", .by_pressure = -1.0});
+    assumptions.push_back({.cause = {Mistake::coupling_missing}, .by_pressure = 0.0});
+    assumptions.push_back({.cause = {Mistake::coupling_sign}, .by_pressure = -1.0});
     if (const auto times = trial.best_coupling()) assumptions.push_back(*times);
   }
   std::vector<Hypothesis> tried;
@@ -218,7 +265,125 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
   return tried;
 }
 
+/// The median of an ordered excess, and the spread between its quartiles.
+struct Plateau {
+  explicit Plateau(const std::vector<double>& excess)
+      : middle(excess[excess.size() / 2]),
+        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
+
+  double middle;
+  double spread;
+};
+
+/// The highest value that many of some logarithms have, and how many.
+struct Highest {
+  double value = 0.0;
+  std::size_t cells = 0;
+};
+
+Highest highest_of(std::vector<double>& logs) {
+  constexpr double kFollows = 5e-3;  // relative, of |q|
+  constexpr std::size_t kTop = 50;   // one in 50 cells may lie above
+  if (logs.empty()) return {};
+  const auto top = logs.end() - 1 - static_cast<std::ptrdiff_t>(logs.size() / kTop);
+  std::ranges::nth_element(logs, top);
+  const double value = *top;
+  const auto cells =
+      std::ranges::count_if(logs, [&](double log) { return std::abs(log - value) <= kFollows; });
+  return {value, static_cast<std::size_t>(cells)};
+}
+
+/// The law |q| = k p^n that most cells follow; and how many follow a multiple of the scene's law.
+struct PowerShown {
+  double exponent = 0.0;
+  double coefficient = 0.0;
+  std::size_t cells = 0;
+  double multiple = 1.0;
+  std::size_t cells_of_multiple = 0;
+};
+
+PowerShown power_shown(const GivenContact& c) {
+  constexpr int kExponents = 400;  // from 0 to 4
+  constexpr double kExponentStep = 0.01;
+  std::vector<Index> cells;
+  const ArrayXd size = solver::norms(c.traction);
+  for (Index cell = 0; cell < size.size(); ++cell) {
+    if (size[cell] > 0.0 && c.friction_bound[cell] > 0.0) cells.push_back(cell);
+  }
+  std::vector<double> logs(cells.size());
+  const auto highest_over = [&](const ArrayXd& unit) {
+    std::ranges::transform(cells, logs.begin(),
+                           [&](Index cell) { return std::log(size[cell] / unit[cell]); });
+    return highest_of(logs);
+  };
+  const Highest own = highest_over(c.friction_bound);
+  PowerShown best{.multiple = std::exp(own.value), .cells_of_multiple = own.cells};
+  for (int k = 0; k <= kExponents; ++k) {
+    const double n = k * kExponentStep;
+    const Highest found = highest_over(c.pressure.pow(n));
+    if (found.cells > best.cells) {
+      best.exponent = n;
+      best.coefficient = std::exp(found.value);
+      best.cells = found.cells;
+    }
+  }
+  return best;
+}
+
+OtherFriction multiple_of_law(const GivenContact& c, double factor) {
+  const solver::FrictionLaw& law = c.friction;
+  return {law.is_coulomb() ? Cause{Mistake::friction_coefficient, factor * law.coefficient, law.coefficient}
+                           : Cause{Mistake::friction_factor, factor},
+          factor * c.friction_bound};
+}
+
+/// Another law that the field follows: Coulomb's, Tresca's or a power of the pressure.
+std::optional<OtherFriction> other_law(const GivenContact& c) {
+  constexpr double kSameExponent = 0.03;
+  constexpr double kSameMean = 0.02;
+  const PowerShown shown = power_shown(c);
+  const solver::FrictionLaw& law = c.friction;
+  const auto is = [&](double n) { return std::abs(shown.exponent - n) <= kSameExponent; };
+  if (std::max(shown.cells, shown.cells_of_multiple) < kMinSlipping) return std::nullopt;
+  constexpr double kAsMany = 0.95;  // follow the scene's own law
+  if (static_cast<double>(shown.cells_of_multiple) >= kAsMany * static_cast<double>(shown.cells))
+    return multiple_of_law(c, shown.multiple);
+  const bool same = (law.is_coulomb() && is(1.0)) || (law.kind == solver::FrictionKind::tresca && is(0.0)) ||
+                    (law.kind == solver::FrictionKind::power && is(law.exponent));
+  if (same) return std::nullopt;  // nearly the scene's law: something else is wrong
+  Cause cause{.mistake = Mistake::power_friction, .found = shown.exponent};
+  if (is(0.0)) {
+    const double mean = law.coefficient * c.pressure.sum() / static_cast<double>((c.pressure > 0.0).count());
+    const bool of_mean = law.is_coulomb() && std::abs(shown.coefficient / mean - 1.0) <= kSameMean;
+    cause = {of_mean ? Mistake::mean_friction : Mistake::tresca_friction, shown.coefficient * c.stress_unit};
+  } else if (is(1.0)) {
+    cause = {Mistake::coulomb_friction, shown.coefficient};
+  }
+  cause.subject =
+      fmt::format("\"{}\"{}", solver::to_string(law.kind),
+                  law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : "");
+  return OtherFriction{cause,
+                       (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
+}
+
 }  // namespace
+
+std::string sentence(const Cause& cause) {
+  const auto found = std::ranges::find(kSentences, cause.mistake, &Sentence::mistake);
+  return fmt::format(fmt::runtime(found->text), cause.found, cause.expected, cause.subject) + cause.note;
+}
+
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
+                                            const Regions& regions) {
+  constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
+  const std::vector<double> excess = ring_excess(contact, right, regions);
+  if (excess.empty()) return std::nullopt;
+  const Plateau shown(excess);
+  if (shown.spread <= kConstant * std::abs(shown.middle)) {
+    return multiple_of_law(contact, 1.0 + shown.middle);
+  }
+  return other_law(contact);
+}
 
 ArrayXd stick_cells(const GivenContact& contact) {
   const ArrayXd size = solver::norms(contact.traction);
@@ -230,7 +395,7 @@ ArrayXd stick_cells(const GivenContact& contact) {
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
                    const std::optional<OtherFriction>& friction, bool half_spaces) {
   const Trial trial(contact, load);
-  const Hypothesis right = trial.of(Assumption{.name = "as it should be"});
+  const Hypothesis right = trial.of(Assumption{});
   std::vector<Hypothesis> tried = half_spaces ? try_kernels(trial) : std::vector<Hypothesis>{};
   // Where hardly any cell sticks, the slipping ones show the kernel.
   const auto shown = right.stick_gap > kExplains * right.gap ? &Hypothesis::stick_gap : &Hypothesis::gap;

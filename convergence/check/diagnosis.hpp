@@ -1,38 +1,109 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "convergence/check/deviation.hpp"
-#include "convergence/check/given_contact.hpp"
 
 namespace slipstick::convergence {
 
-/// How well Coulomb's law holds under one assumption about how tractions were computed. Gaps are over the
-/// energy. The gap in stick cells, which have to move as a rigid body, depends on the elastic kernel alone.
+/// Mistakes in fields that `check` can name.
+enum class Mistake {
+  none,
+  cross_kernel_even,  ///< K12 without its sign
+  cross_kernel_missing,
+  cross_kernel_sign,
+  cross_kernel_factor,  ///< found: the factor
+  kernels_exchanged,    ///< K11 and K22
+  no_poisson_ratio,
+  poisson_ratio,     ///< found, expected
+  coupling_missing,  ///< K13 and K23
+  coupling_sign,
+  coupling_factor,       ///< found: the factor
+  friction_coefficient,  ///< found, expected
+  friction_factor,       ///< found: the factor of the scene's bound
+  tresca_friction,       ///< found: the strength, Pa; subject: the scene's law
+  mean_friction,         ///< the same, where the strength is mu times the mean pressure
+  coulomb_friction,      ///< found: the coefficient; subject: the scene's law
+  power_friction,        ///< found: the exponent; subject: the scene's law
+  kept_directions,       ///< slipping cells keep a direction that does not oppose slip
+  sampled_singularity,
+  lost_rows,  ///< found: cells without a row
+  late_step,  ///< found: the number of steps
+  late_step_by_twist,
+  one_compliance,     ///< of one body only
+  compliance_factor,  ///< found: the factor
+  radius_factor,
+  modulus_factor,
+  layer_ignored,    ///< subject: the body
+  layer_exchanged,  ///< its constants and the body's
+  layer_on_other_body,
+  layer_between_ignored,
+  layer_thickness,  ///< found, expected: m
+  twist_in_degrees,
+  twist_in_mrad,
+  twist_sign,
+  normalised_twist,
+  other_twist,  ///< found: the tractions' own, rad
+};
+
+/// A likely cause of what is wrong, and the numbers of its sentence.
+struct Cause {
+  Mistake mistake = Mistake::none;
+  double found = std::numeric_limits<double>::quiet_NaN();
+  double expected = std::numeric_limits<double>::quiet_NaN();
+  std::string subject = {};
+  bool alternative = false;  ///< to the cause before it in a list: the field does not tell them apart
+  std::string note = {};     ///< what follows from it, as a bracket behind the sentence; empty: nothing
+};
+std::string sentence(const Cause& cause);
+
+/// How well Coulomb's law holds if tractions were computed with one mistake. Gaps are over the energy. Stick
+/// cells move as a rigid body: their gap depends only on the elastic kernel.
 struct Hypothesis {
-  std::string name;
+  Cause cause;
   double gap;
   double stick_gap;
   double twist;  ///< rad: the one that fits best
 };
 
+/// Another friction than the scene's.
+struct OtherFriction {
+  Cause cause;
+  Eigen::ArrayXd bound;  ///< cells
+};
+
+/// The friction that a field shows: the scene's law times a factor, unless |q| over its bound varies in half
+/// of the slip ring by more than a part of its distance from 1; or else the law |q| = k p^n that most cells
+/// follow (n = 0: Tresca's, n = 1: Coulomb's), or the multiple of the scene's law, if as many follow it. None
+/// where few cells follow any.
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
+                                            const Regions& regions);
+
 struct Diagnosis {
   Hypothesis reference_kernel;         ///< with the right kernel and friction
   std::vector<Hypothesis> tried;       ///< mistakes that solvers make
-  std::optional<Hypothesis> kernel;    ///< the one that explains the stick area, or else the gap
+  std::optional<Hypothesis> kernel;    ///< explains the stick area, or else the gap
   std::optional<Hypothesis> friction;  ///< the friction that was used
   /// With that kernel, or else the right one, only slipping cells break the law.
   bool stick_area_explained;
 };
 
-/// Tries wrong kernels on a contact that breaks Coulomb's law (K12 mirrored as an even function, missing, of
-/// the wrong sign, times a factor; K11 and K22 exchanged; another Poisson's ratio, or zero; K13 and K23
-/// missing, of the wrong sign, times a factor), and the friction that its slip ring shows, if it is given.
-/// allowed: the gap over energy that its mesh explains. half_spaces: whether the kernels are those of
-/// half-spaces; of other bodies no wrong kernel is tried. Displacements are summed directly, in large
-/// contacts at some of the cells.
+/// Tries wrong kernels on a contact that breaks Coulomb's law:
+///
+///  1. The contact's cells are the sources; in large contacts displacements are summed at some of them.
+///  2. The displacements are split into the parts that each kernel makes (Displacements).
+///  3. For each mistake, those parts are weighted anew and the rigid motion is fitted: the gap that is left.
+///  4. A mistake explains the gap of the stick area, or where hardly any cell sticks the whole gap, if it
+///     lowers it to a tenth.
+///
+/// The mistakes: K12 mirrored as an even function, missing, of the wrong sign, times a factor; K11 and K22
+/// exchanged; another Poisson's ratio, or zero; K13 and K23 missing, of the wrong sign, times a factor; and
+/// the friction that the slip ring shows, if it is given. allowed: the gap over energy that the mesh
+/// explains. half_spaces: whether the bodies are half-spaces; on others no wrong kernel is tried.
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
                    const std::optional<OtherFriction>& friction = {}, bool half_spaces = true);
 

@@ -30,13 +30,13 @@ constexpr double kQuickGridCells = 65536.0;  // judged within seconds
 constexpr double kMaxSlender = 1000.0;
 /// Rows are taken to be astray where at most this part of all rows lies beyond the widest gap,
 constexpr double kMaxAstray = 0.02;
-/// and that gap is wider than all rows of cells side by side, so many times: no such contact is one,
+/// and that gap is wider than this multiple of the width of all rows of cells side by side,
 constexpr double kTimesAcross = 10.0;
-/// or is so many steps wide, and some position fits no grid.
+/// or wider than this many steps of the grid while some position fits no grid.
 constexpr double kStepsAway = 10.0;
 /// A position may be off its cell's centre by this part of the cell, or by twice its rounding,
 constexpr double kOffCentre = 1e-2;
-/// as long as that is at most this part of the cell: more would not distinguish cells.
+/// up to this part of the cell, within which positions still distinguish cells.
 constexpr double kDistinguishesCells = 0.25;
 
 /// Equally spaced places along one axis.
@@ -241,6 +241,24 @@ ForeignField read_foreign_field(const std::filesystem::path& file, const std::ve
     throw InputError(file.string(), "q1 and q2 are zero everywhere: there is nothing to judge");
   }
   return field;
+}
+
+GivenContact pose(const ForeignField& field, const solver::Dimensionless& bodies, int threads) {
+  const solver::Dimensionless here = bodies.on_grid(field.grid, field.centre);
+  const double length = here.length_unit;
+  const double stress = here.stress_unit;
+  GivenContact contact(here, {.law = here.law, .threads = threads},
+                       {field.centre[0] / length, field.centre[1] / length}, field.pressure / stress,
+                       field.traction / stress);
+  const ArrayXd rounding = field.pressure_rounding / stress;
+  const ArrayXd& p = contact.pressure;
+  contact.bound_rounding =
+      here.friction.is_coulomb()
+          ? ArrayXd(here.friction.coefficient * rounding)
+          : ArrayXd(
+                (p > 0.0).select(here.friction.bound(ArrayXd(p + rounding)) - contact.friction_bound, 0.0));
+  contact.traction_rounding = field.traction_rounding / stress;
+  return contact;
 }
 
 }  // namespace slipstick::convergence

@@ -3,15 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "convergence/oracle/oracle.hpp"
+#include "convergence/exchange/given_contact.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/input/field_file.hpp"
-#include "solver/model/model.hpp"
-#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 
@@ -29,7 +26,7 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
                           const solver::Column& x2);
 
 /// Pressure and shear tractions that another program computed, over the bounding rectangle of its contact
-/// cells. A cell that its file does not hold carries nothing.
+/// cells. A cell without a row in the file carries nothing.
 struct ForeignField {
   std::filesystem::path file;
   solver::Grid grid;                 ///< m, about its own centre
@@ -37,7 +34,7 @@ struct ForeignField {
   Eigen::ArrayXd pressure;           ///< cells, Pa
   Eigen::ArrayXd traction;           ///< 2*cells, Pa, on the lower body
   Eigen::ArrayXd pressure_rounding;  ///< cells, Pa: the error that the file's digits allow
-  Eigen::ArrayXd traction_rounding;  ///< cells, Pa: likewise of |q|
+  Eigen::ArrayXd traction_rounding;  ///< cells, Pa: the same of |q|
 };
 
 /// Reads the columns x1, x2, pressure, q1, q2 as solver::read_columns() does (`columns` as in its options;
@@ -47,26 +44,7 @@ struct ForeignField {
 ForeignField read_foreign_field(const std::filesystem::path& file,
                                 const std::vector<std::string>& columns = {});
 
-// ---------------------------------------------------------------- its conventions (conventions.cpp)
-
-/// A field in this project's conventions.
-struct Interpretation {
-  ForeignField field;
-  std::vector<std::string> conventions;  ///< conventions that were undone, one sentence each
-  std::vector<std::string> mistakes;     ///< mistakes that were undone, so that the rest can be judged
-};
-
-/// Finds the conventions in which a field fits the scene best. The contact's size shows the unit of length,
-/// its load the unit of stress, the shape of an elliptic contact exchanged axes, its middle another origin.
-/// The loads that the tractions carry show tractions on the other body, a left-handed frame and exchanged
-/// columns. One component reversed alone is a mistake. model: the scene's. Throws InputError where no unit
-/// fits.
-Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
-                                  const OracleAnswer& exact);
-
-/// A scene's moment over `unit`, from the exact answer or the scene's load. limit: the limit moment of the
-/// pressure, over the same unit. None under an imposed twist without an exact answer.
-std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
-                                   double unit);
+/// The scene's bodies with the field's pressure and tractions, on the field's grid. bodies: on any grid.
+GivenContact pose(const ForeignField& field, const solver::Dimensionless& bodies, int threads);
 
 }  // namespace slipstick::convergence

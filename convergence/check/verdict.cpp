@@ -1,14 +1,14 @@
 #include "convergence/check/verdict.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "convergence/check/mistaken_scene.hpp"
-#include "convergence/oracle/errors.hpp"
+#include "convergence/check/diagnosis.hpp"
+#include "solver/contact/fitted_motion.hpp"
 #include "solver/step/describe_step.hpp"
 
 namespace slipstick::convergence {
@@ -16,6 +16,172 @@ namespace {
 
 using Eigen::ArrayXd;
 using solver::Index;
+
+/// Error that a mesh may cause over the error of the reference fields: these know the truth to a third of the
+/// mesh error, and other discretisations have errors of the same size.
+constexpr double kWholeMesh = 2.0;
+/// Effect of rounding or noise over its effect in the random draw on which it was measured.
+constexpr double kOtherDraws = 2.0;
+/// Relative error of loads, times the number of contact cells n. A sum over cells of a field that ends like a
+/// square root misses up to 4/pi^2 h^2/a^2 at the contact's edge (Poisson's summation, nearest images), about
+/// 1/n with the stick area's edge; two such sums are compared.
+constexpr double kQuadrature = 2.0;
+/// The same of a bound that ends in a step, times n^(3/4): twice the spread of a sum over the cells whose
+/// centres lie in a circle, 0.7 of the root of the radius in cells for 1 (Kendall 1948), and 3/2 of that for
+/// r.
+constexpr double kEndsInStep = 1.5;
+/// Degrees between slip and traction that change no result noticeably.
+constexpr double kUnseenAngle = 0.1;
+/// Gap over energy that the mesh may cause where the field's cells are constant, where only the iteration
+/// leaves a gap: tractions are then good to a few hundredths.
+constexpr double kUnfinishedGap = 1e-3;
+/// Relative: friction coefficients are not known to more digits.
+constexpr double kFrictionDigits = 1e-3;
+/// Standard deviations by which no cell of a contact is off by chance.
+constexpr double kLargestDraw = 6.0;
+/// Relative error of the pressure that a normal solver's tolerance of 1e-3 leaves in the mean.
+constexpr double kNormalTolerance = 2e-3;
+/// Error of pressure or traction in a single cell, over the largest value.
+constexpr double kCellTolerance = 5e-3;
+
+/// For each cell, a number made from the values of its neighbours, which `take` gets in ascending order.
+template <typename Take>
+ArrayXd of_neighbours(const solver::Grid& grid, const ArrayXd& values, const Take& take) {
+  ArrayXd result(grid.cells());
+  std::vector<double> around;
+  for (Index cell = 0; cell < grid.cells(); ++cell) {
+    around.clear();
+    for (Index i = cell / grid.n2 - 1; i <= cell / grid.n2 + 1; ++i) {
+      for (Index j = cell % grid.n2 - 1; j <= cell % grid.n2 + 1; ++j) {
+        const Index other = i * grid.n2 + j;
+        if (i >= 0 && i < grid.n1 && j >= 0 && j < grid.n2 && other != cell) around.push_back(values[other]);
+      }
+    }
+    std::ranges::sort(around);
+    result[cell] = take(around);
+  }
+  return result;
+}
+
+/// The error that each cell may have. The mesh error that right fields show may stand one cell further on;
+/// and a cell may be off where half of its neighbours are, since the mean judges those.
+ArrayXd allowed_in_cells(const solver::Grid& grid, double scale, const ArrayXd& deviation,
+                         const ArrayXd& mesh, const ArrayXd& chance) {
+  const auto largest = [](const std::vector<double>& around) { return around.back(); };
+  const auto median = [](const std::vector<double>& around) { return around[around.size() / 2]; };
+  return kCellTolerance * scale + chance +
+         kWholeMesh * (mesh.max(of_neighbours(grid, mesh, largest)) + of_neighbours(grid, deviation, median));
+}
+
+/// Relative error of sums over the contact by rounding and noise.
+double error_of_sums(const Examination& e) {
+  const GivenContact& c = e.contact;
+  return c.traction_rounding.sum() / solver::norms(c.traction).sum() +
+         c.bound_rounding.sum() / c.friction_bound.sum() +
+         kLargestDraw * std::sqrt(e.reference.noise_size.square().sum()) / c.friction_bound.sum();
+}
+
+/// The gap over energy that a relative error of the tractions may cause.
+double gap_of_tolerance(const Examination& e, double tolerance) {
+  const GivenContact& c = e.contact;
+  const ArrayXd reach = solver::norms(e.state.slip) + solver::norms(c.displacement);
+  return tolerance * (c.friction_bound * reach).sum() / c.energy();
+}
+
+/// Distance of the field's tractions from the right ones, cell by cell.
+ArrayXd traction_deviation(const Examination& e) {
+  return solver::norms(e.contact.traction - e.reference.right.traction);
+}
+
+/// The maxima that do not depend on a tolerance.
+Allowed allowed_anyway(const Examination& e) {
+  const GivenContact& c = e.contact;
+  const ReferenceOnGrid& y = e.reference;
+  Allowed allowed{};
+  allowed.discrete_gap = kIterationGap + kOtherDraws * y.rounding.gap;
+  allowed.traction_cells =
+      allowed_in_cells(c.grid, c.friction_bound.maxCoeff(), traction_deviation(e), y.mesh.tractions,
+                       kLargestDraw * y.noise_size + kOtherDraws * (c.traction_rounding + c.bound_rounding));
+  // A part of a cell may carry anything up to a bound that does not vanish at the edge.
+  if (e.scene.friction.kind == solver::FrictionKind::tresca)
+    allowed.traction_cells += c.friction_bound * (1.0 - y.regions.inner);
+  if (y.pressure) {
+    allowed.pressure_cells =
+        allowed_in_cells(c.grid, y.pressure->values.maxCoeff(), y.pressure->deviation, y.mesh.pressures,
+                         (kLargestDraw * y.noise_size + kOtherDraws * c.bound_rounding) / c.mean_friction());
+  }
+  return allowed;
+}
+
+/// Whether |q| <= mu p, up to the file's digits and a solver's tolerance. Otherwise Coulomb's gap is
+/// undefined.
+bool keeps_friction_bound(const GivenContact& c) {
+  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + solver::kOnCircle) * c.friction_bound -
+                         c.traction_rounding - c.bound_rounding;
+  return beyond.maxCoeff() <= kNextToNothing * solver::kOnCircle * c.friction_bound.maxCoeff();
+}
+
+Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
+  const ReferenceOnGrid& y = e.reference;
+  constexpr double kDegreesInARadian = 180.0 / std::numbers::pi;
+  Allowed allowed = allowed_anyway(e);
+  if (tolerance) {
+    allowed.normal = allowed.moment = allowed.force = allowed.pressure = allowed.motion = allowed.tractions =
+        allowed.inside = allowed.friction = *tolerance;
+    allowed.friction_bound = std::max(kFrictionDigits, *tolerance - kFrictionDigits);
+    allowed.direction = kDegreesInARadian * *tolerance;
+    allowed.gap = allowed.discrete_gap + gap_of_tolerance(e, *tolerance);
+    return allowed;
+  }
+  const auto by_chance = [&](double Deviation::*part) {
+    return kOtherDraws * (y.noise.*part + y.rounding.*part);
+  };
+  const auto cells = static_cast<double>((e.contact.pressure > 0.0).count());
+  const bool step = e.scene.friction.kind == solver::FrictionKind::tresca;
+  const double quadrature = kQuadrature / cells;
+  const double of_moment = step ? kEndsInStep * std::pow(cells, -0.75) : quadrature;
+  const double sums = error_of_sums(e);
+  // A program that solves this grid's problem knows its own sums and its own twist.
+  const bool discrete =
+      e.constant_cells && keeps_friction_bound(e.contact) && e.deviation.gap <= allowed.discrete_gap;
+  // Constant cells leave the motion open only as far as the iteration leaves the tractions open.
+  const double off = e.deviation.tractions / y.mesh.deviation.tractions;
+  const double unfinished = discrete ? 0.0 : e.constant_cells ? std::min(1.0, off) : 1.0;
+  const auto load = [&](double measured, double of_sum) {
+    return std::max(discrete ? 0.0 : kWholeMesh * measured, of_sum) + sums;
+  };
+  allowed.normal = load(y.mesh.loads.normal, quadrature);
+  allowed.moment = solver::value_if<solver::Twist>(e.scene.steps.front().torsion)
+                       ? std::max(kWholeMesh * y.mesh.deviation.moment, of_moment) + sums
+                       : load(y.mesh.loads.moment, of_moment);
+  allowed.force = load(y.mesh.loads.force, quadrature);
+  allowed.pressure =
+      kNormalTolerance + kWholeMesh * y.mesh.deviation.pressure +
+      kOtherDraws * (e.contact.bound_rounding.sum() + y.noise_size.sum()) / e.contact.friction_bound.sum();
+  allowed.motion =
+      unfinished * kWholeMesh * y.mesh.deviation.motion + quadrature + by_chance(&Deviation::motion);
+  allowed.tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
+  allowed.inside = kWholeMesh * y.mesh.deviation.inside + by_chance(&Deviation::inside);
+  allowed.friction =
+      kFrictionDigits + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction);
+  allowed.friction_bound =
+      std::max(kFrictionDigits, kWholeMesh * y.mesh.deviation.excess + by_chance(&Deviation::excess));
+  allowed.direction =
+      kUnseenAngle + kWholeMesh * y.mesh.direction + kDegreesInARadian * by_chance(&Deviation::tractions);
+  allowed.gap = allowed.discrete_gap +
+                std::min(kWholeMesh * y.mesh.deviation.gap, e.constant_cells ? kUnfinishedGap : INFINITY) +
+                kOtherDraws * y.noise.gap;
+  return allowed;
+}
+
+/// The part of mu p by which |q| exceeds it in the worst cell, beyond digits and noise; a cell that carries
+/// less than kNextToNothing is judged by a part of the largest mu p.
+double friction_excess(const Examination& e) {
+  const GivenContact& c = e.contact;
+  const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding -
+                         c.bound_rounding - kLargestDraw * e.reference.noise_size;
+  return (beyond / c.friction_bound.max(kNextToNothing * c.friction_bound.maxCoeff())).maxCoeff();
+}
 
 std::string percent(double part) {
   const double size = 100.0 * std::abs(part);
@@ -25,14 +191,13 @@ std::string percent(double part) {
 
 std::string allowed_text(double allowed) { return fmt::format(" (allowed: {})", percent(allowed)); }
 
-/// "5.1 % too low".
-std::string off_text(double error) {
-  return fmt::format("{} too {}", percent(error), error < 0.0 ? "low" : "high");
-}
-
 Judged judge_error(const std::string& what, const std::string& key, double error, double allowed) {
-  return {key, std::abs(error), allowed, "",
-          fmt::format("{} is {}{}", what, off_text(error), allowed_text(allowed))};
+  return {key,
+          std::abs(error),
+          allowed,
+          "",
+          fmt::format("{} is {}{}", what, off_text(error), allowed_text(allowed)),
+          error < 0.0};
 }
 
 /// A cell's centre in the scene's coordinates, in m.
@@ -58,7 +223,7 @@ Judged judge_cells(const std::string& what, const std::string& key, const GivenC
                       percent(deviation[cell] / scale), allowed_text(allowed[cell] / scale))};
 }
 
-/// Judges a field in the mean, and in parts of it, of which only the first wrong one is put in words.
+/// Judges a field in the mean and in parts; only the first wrong one of these is put in words.
 void judge_field(std::vector<Judged>& judged, const Judged& mean, std::vector<Judged> parts) {
   bool right = mean.holds();
   judged.push_back(mean);
@@ -97,28 +262,12 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, const All
                    allowed.pressure_cells)});
 }
 
-/// The relative error of the moment, which the scene asks for or the imposed twist causes. A scene's ratio
-/// may refer to the exact limit moment, to the limit of the field's own pressure or, where the exact one is
-/// not known, to that of the right pressure on a finer mesh. None: the moment is not known.
-std::optional<double> moment_error(const Examination& e) {
-  const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
-  if (std::holds_alternative<solver::Twist>(torsion)) return e.deviation.moment;
-  if (!e.moment || *e.moment == 0.0) return std::nullopt;
-  const double error = relative_error(e.contact.moment(), *e.moment);
-  const auto ratio = solver::value_if<solver::MomentRatio>(torsion);
-  if (!ratio) return error;
-  const double of_own_limit = relative_error(e.contact.moment(), *ratio * e.moment_limit);
-  const double of_finer_limit = relative_error(e.contact.moment(), *ratio * e.reference.mesh.moment_limit);
-  const bool exact = e.exact.oracle && std::isfinite(e.exact.oracle->moment);
-  return std::min({error, of_own_limit, exact ? error : of_finer_limit},
-                  [](double a, double b) { return std::abs(a) < std::abs(b); });
-}
-
 void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   if (const auto error = moment_error(e)) {
     Judged moment = judge_error("the moment", "moment_error", *error, allowed.moment);
     moment.right = "the moment is right";
-    if (!(e.stick > 0.0).any()) moment.wrong += ": all of the contact slips, and friction carries no more";
+    if (!(stick_cells(e.contact) > 0.0).any())
+      moment.wrong += ": all of the contact slips, and friction carries no more";
     judged.push_back(moment);
   }
   judged.push_back({"force", e.certificate.force, allowed.force, "",
@@ -126,13 +275,10 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
                                 allowed_text(allowed.force))});
 }
 
-/// Whether the scene has no tangential force and imposes no displacement.
-bool is_torsion(const solver::Scene& scene) { return !solver::brings_translation(scene.steps.front()); }
-
 /// Judges motion and tractions. Where the law of friction is broken, an inferred twist means little: no
 /// sentence mentions it.
 void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
-  if (e.reference.right.scaled) return;  // the right motion and tractions are those of other loads
+  if (e.reference.right.scaled) return;  // the right motion and tractions belong to other loads
   const bool torsion = is_torsion(e.scene);
   const double error = e.deviation.motion;
   Judged motion = torsion ? judge_error("the twist", "twist", error, allowed.motion)
@@ -180,166 +326,6 @@ Judged judge_discrete(const Examination& e, const Allowed& allowed) {
           "it solves its own grid's problem", "it does not solve its own grid's problem"};
 }
 
-/// "a, b and c".
-std::string listed(const std::vector<std::string>& parts) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
-    text += parts[i];
-  }
-  return text;
-}
-
-bool holds(const std::vector<Judged>& judged, const std::string& quantity) {
-  return std::ranges::all_of(judged,
-                             [&](const Judged& item) { return item.quantity != quantity || item.holds(); });
-}
-
-bool all_hold(const std::vector<Judged>& judged) { return std::ranges::all_of(judged, &Judged::holds); }
-
-bool has_right_pressure(const std::vector<Judged>& judged) {
-  return holds(judged, "normal_load_error") && holds(judged, "pressure");
-}
-
-/// The kernel's name, with the twist that follows from it.
-std::string kernel_text(const Hypothesis& kernel, const Examination& e) {
-  if (e.reference.right.scaled || !is_torsion(e.scene)) return kernel.name;
-  return kernel.name + fmt::format(" (the twist is {:.6g} rad with that, {})", kernel.twist,
-                                   off_text(relative_error(kernel.twist, e.reference.right.twist)));
-}
-
-/// The mistake that explains the ratio of the reported twist to the one that fits the tractions.
-std::string twist_mistake(const Examination& e, double allowed) {
-  struct Ratio {
-    double value;
-    const char* words;
-  };
-  const auto compliance = [](const solver::Material& m) {  // of a coated body there is no single one
-    return m.coating ? std::nan("") : (1.0 + m.poisson_ratio) / m.young_modulus;
-  };
-  const double lower = compliance(e.scene.lower);
-  const double upper = compliance(e.scene.upper);
-  const auto& exact = e.exact.oracle;
-  const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
-  const std::array<Ratio, 7> ratios{{{lower / (lower + upper), "the compliance of one body only"},
-                                     {upper / (lower + upper), "the compliance of one body only"},
-                                     {2.0, "twice the compliance of the pair"},
-                                     {180.0 / std::numbers::pi, "a twist in degrees"},
-                                     {1e3, "a twist in mrad"},
-                                     {-1.0, "a twist of the other sense"},
-                                     {normalised, "the normalised twist of a result, G a^2 phi/(mu W)"}}};
-  for (const Ratio& ratio : ratios) {
-    if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
-  }
-  return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
-}
-
-/// Tractions of a smaller load than the scene's, which are right under their own: those of the step before
-/// the last of N equal ones, or of some other where the reported twist is that of the scene's load.
-std::optional<std::string> step_before(const Examination& e, const std::vector<Judged>& judged,
-                                       const Allowed& allowed) {
-  constexpr double kMostSteps = 10.0;  // more steps stand too close to be told from other mistakes
-  const bool others_hold = std::ranges::all_of(judged, [](const Judged& item) {
-    return item.holds() || item.quantity == "moment_error" || item.quantity == "twist";
-  });
-  const auto error = moment_error(e);
-  if (!others_hold || !error || holds(judged, "moment_error") || !(*error < 0.0)) return std::nullopt;
-  const double steps = std::round(-1.0 / *error);
-  const double apart = std::abs(1.0 + *error * steps) / steps;
-  if (steps <= kMostSteps && apart <= std::min(allowed.moment, 0.05 / (steps * (steps + 1.0)))) {
-    return fmt::format("tractions one step late: those of the step before the last of {}", steps);
-  }
-  const bool twist_of_scene =
-      e.twist_given && e.exact.oracle && !holds(judged, "twist") &&
-      std::abs(relative_error(e.state.twist, e.exact.oracle->twist_angle)) <= allowed.motion;
-  if (twist_of_scene) return "tractions one step late: the twist is that of the scene's load";
-  return std::nullopt;
-}
-
-/// Names only mistakes whose correction would leave a good field.
-std::vector<std::string> causes(const Examination& e, const std::vector<Judged>& judged,
-                                const std::optional<Diagnosis>& diagnosis,
-                                const std::optional<OtherFriction>& shown, const Allowed& allowed) {
-  std::vector<std::string> causes;
-  constexpr double kSampled = 1e-3;   // relative error in L1 of exact values at cell centres, rounded
-  constexpr double kCollapsed = 0.1;  // gap that a kernel leaves, over the gap that it explains
-  if (!has_right_pressure(judged) && e.exact.oracle && !std::isfinite(e.exact.oracle->peak_pressure) &&
-      pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m()).l1 <=
-          kSampled) {
-    causes.emplace_back(
-        "a pressure that is infinite at a place, sampled at cell centres in place of averaged");
-  }
-  if (!has_right_pressure(judged) && causes.empty()) {
-    auto mistake = lost_rows(e, allowed.pressure);
-    if (!mistake && holds(judged, "normal_load_error")) mistake = mistaken_scene(e, allowed.pressure);
-    if (mistake) causes.push_back(std::move(*mistake));
-  }
-  if (const auto late = step_before(e, judged, allowed)) causes.push_back(*late);
-  if (!diagnosis || !has_right_pressure(judged) || !causes.empty()) return causes;
-  const bool others_hold = std::ranges::all_of(
-      judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
-  if (e.twist_given && !holds(judged, "twist") && others_hold) {
-    causes.push_back(twist_mistake(e, allowed.motion));
-    return causes;
-  }
-  // A cause has to lower the gap to what is allowed, and clearly: the mesh alone may nearly explain it.
-  const double left = e.constant_cells ? allowed.discrete_gap : allowed.gap;
-  const double gap = std::min(left, kCollapsed * diagnosis->reference_kernel.gap);
-  if (const auto& friction = diagnosis->friction;
-      friction && friction->gap <= left && keeps_friction(e.contact, *shown, allowed.tractions)) {
-    causes.push_back(friction->name);
-    return causes;
-  }
-  const bool directions = holds(judged, "friction") && holds(judged, "moment_error") &&
-                          !holds(judged, "slip_direction") && diagnosis->stick_area_explained;
-  if (const auto& kernel = diagnosis->kernel) {
-    const bool explains = kernel->gap <= gap || (directions && kernel->stick_gap <= kIterationGap);
-    if (explains) causes.push_back(kernel_text(*kernel, e));
-    if (!explains || kernel->gap <= gap) return causes;
-  } else if (!directions_explain(e.contact, e.reference.right, allowed.tractions)) {
-    return causes;
-  }
-  if (directions)
-    causes.emplace_back("slipping cells that keep a direction which does not oppose their slip");
-  return causes;
-}
-
-/// The likely causes, what else is wrong, and what is right.
-std::string details_of(const std::vector<Judged>& judged, const Judged& discrete,
-                       const std::vector<std::string>& causes) {
-  std::vector<std::string> right;
-  std::vector<std::string> wrong;
-  const bool lawful = holds(judged, "slip_direction") && holds(judged, "gap") && holds(judged, "tractions") &&
-                      holds(judged, "friction");
-  for (const Judged& item : judged) {
-    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // that the law holds would mislead
-    const std::string& text = item.holds() ? item.right : item.wrong;
-    if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
-  }
-  const bool good = all_hold(judged);
-  std::vector<std::string> parts;
-  if (!causes.empty()) parts.push_back(fmt::format("it looks like {}", fmt::join(causes, ", and like ")));
-  if (wrong.size() > 1) parts.push_back("besides, " + listed({wrong.begin() + 1, wrong.end()}));
-  if (!right.empty()) parts.push_back(listed(right));
-  if (good || discrete.holds()) parts.push_back(discrete.holds() ? discrete.right : discrete.wrong);
-  return fmt::format("{}", fmt::join(parts, "; "));
-}
-
-/// The first quantity that is wrong, in the order in which one follows from another.
-std::string headline_of(const Examination& e, const std::vector<Judged>& judged, const Allowed& allowed) {
-  for (const Judged& item : judged) {
-    if (!item.holds() && !item.wrong.empty()) return item.wrong;
-  }
-  std::string text = "right within its mesh";
-  if (!e.reference.pressure) {
-    text += e.pressure_given ? ", with the pressure taken as given"
-                             : ", with the pressure taken as it is (the scene's is solved on other cells)";
-  }
-  if (e.reference.right.scaled) return text;
-  return text + fmt::format(": the tractions are {} off in the mean{}", percent(e.deviation.tractions),
-                            allowed_text(allowed.tractions));
-}
-
 /// Whether a field of constant cells that does not solve its own grid's problem solves it with a wrong
 /// kernel: an iteration that stopped too early leaves a gap with any.
 bool is_solved_with_other_kernel(const Examination& e, const Allowed& allowed) {
@@ -350,7 +336,41 @@ bool is_solved_with_other_kernel(const Examination& e, const Allowed& allowed) {
 
 }  // namespace
 
-bool Verdict::within_mesh() const { return all_hold(judged); }
+std::string off_text(double error) {
+  return fmt::format("{} too {}", percent(error), error < 0.0 ? "low" : "high");
+}
+
+std::string listed(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
+    text += parts[i];
+  }
+  return text;
+}
+
+std::optional<double> moment_error(const Examination& e) {
+  const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
+  if (std::holds_alternative<solver::Twist>(torsion)) return e.deviation.moment;
+  if (!e.moment || *e.moment == 0.0) return std::nullopt;
+  const double error = relative_error(e.contact.moment(), *e.moment);
+  const auto ratio = solver::value_if<solver::MomentRatio>(torsion);
+  if (!ratio) return error;
+  const double of_own_limit = relative_error(e.contact.moment(), *ratio * e.moment_limit());
+  const double of_finer_limit = relative_error(e.contact.moment(), *ratio * e.reference.mesh.moment_limit);
+  const bool exact = e.exact.oracle && std::isfinite(e.exact.oracle->moment);
+  return std::min({error, of_own_limit, exact ? error : of_finer_limit},
+                  [](double a, double b) { return std::abs(a) < std::abs(b); });
+}
+
+bool is_torsion(const solver::Scene& scene) { return !solver::brings_translation(scene.steps.front()); }
+
+bool Verdict::within_mesh() const { return std::ranges::all_of(judged, &Judged::holds); }
+
+bool Verdict::holds(const std::string& quantity) const {
+  return std::ranges::all_of(judged,
+                             [&](const Judged& item) { return item.quantity != quantity || item.holds(); });
+}
 
 Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   Allowed allowed = find_allowed(e, tolerance);
@@ -360,22 +380,23 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   judge_loads(judged, e, allowed);
   std::vector<Judged> law;
   judge_friction(law, e, allowed);
-  const bool lawful = all_hold(law);
   // Friction comes first, then motion and tractions, which follow from it; slip direction and gap come last.
   const auto follows = law.begin() + 2;
   judged.insert(judged.end(), law.begin(), follows);
-  judge_motion(judged, e, allowed, lawful);
+  judge_motion(judged, e, allowed, std::ranges::all_of(law, &Judged::holds));
   judged.insert(judged.end(), follows, law.end());
-  std::optional<OtherFriction> friction;
-  std::optional<Diagnosis> diagnosis;
-  if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
-    if (!holds(judged, "friction") || !holds(judged, "friction_bound"))
-      friction = friction_shown(e.contact, e.reference.right, e.reference.regions);
-    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction, !is_coated(e.scene));
+  return {judged, judge_discrete(e, allowed), allowed};
+}
+
+std::string right_text(const Examination& e, const Verdict& verdict) {
+  std::string text = "right within its mesh";
+  if (!e.reference.pressure) {
+    text += e.pressure_given ? ", with the pressure taken as given"
+                             : ", with the pressure taken as it is (the scene's is solved on other cells)";
   }
-  const Judged discrete = judge_discrete(e, allowed);
-  return {judged, discrete, diagnosis, headline_of(e, judged, allowed),
-          details_of(judged, discrete, causes(e, judged, diagnosis, friction, allowed))};
+  if (e.reference.right.scaled) return text;
+  return text + fmt::format(": the tractions are {} off in the mean{}", percent(e.deviation.tractions),
+                            allowed_text(verdict.allowed.tractions));
 }
 
 }  // namespace slipstick::convergence

@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "convergence/check/diagnosis.hpp"
 #include "convergence/check/examination.hpp"
 
 namespace slipstick::convergence {
-
-// ---------------------------------------------------------------- what a mesh allows (allowed.cpp)
 
 /// The largest values that a right field may have on its own mesh: errors of loads, motion and fields, all
 /// relative, and distances from Coulomb's law.
@@ -25,25 +22,9 @@ struct Allowed {
   double friction;                ///< of |q|/(mu p) in the slip ring
   double friction_bound;          ///< of friction_excess()
   double direction;               ///< degrees
-  double gap;                     ///< of Coulomb's law over the energy,
-  double discrete_gap;            ///< and of a field that solves its own grid's problem
+  double gap;                     ///< of Coulomb's law over the energy
+  double discrete_gap;            ///< the same of a field that solves its own grid's problem
 };
-
-/// tolerance: takes the place of the errors that the mesh allows for loads, motion, pressure and tractions.
-Allowed find_allowed(const Examination& examination, std::optional<double> tolerance);
-
-/// Whether |q| <= mu p, up to the file's digits and a solver's tolerance. Otherwise Coulomb's gap is
-/// undefined.
-bool keeps_friction_bound(const GivenContact& contact);
-
-/// The part of mu p by which |q| exceeds it in the worst cell, beyond digits and noise; a cell that carries
-/// next to nothing is judged by a part of the largest mu p.
-double friction_excess(const Examination& examination);
-
-/// Distance of the field's tractions from the right ones, cell by cell.
-Eigen::ArrayXd traction_deviation(const Examination& examination);
-
-// ---------------------------------------------------------------- what is judged by that (verdict.cpp)
 
 /// A number and its allowed maximum, which NaN exceeds.
 struct Judged {
@@ -51,7 +32,8 @@ struct Judged {
   double value;
   double allowed;
   std::string right;  ///< words for the verdict where it holds; empty: none
-  std::string wrong;  ///< and where it does not: how much, where, and the maximum; empty: none
+  std::string wrong;  ///< and where it does not: the error, its place, the maximum; empty: none
+  bool low = false;   ///< the quantity is too small, where its error has a sign
 
   bool holds() const { return value <= allowed; }
 };
@@ -61,16 +43,40 @@ struct Judged {
 /// mesh, or against the user's tolerance. Does it solve its own grid's problem, with constant tractions in
 /// each cell, up to iteration error?
 struct Verdict {
-  std::vector<Judged> judged;
+  std::vector<Judged> judged;  ///< in the order in which one quantity follows from another
   Judged discrete;
-  std::optional<Diagnosis> diagnosis;  ///< of a field that is wrong
-  std::string headline;                ///< names the first quantity that is wrong, or says that all are right
-  std::string details;                 ///< the cause, what else is wrong, and what is right
+  Allowed allowed;
 
   bool within_mesh() const;
+  bool holds(const std::string& quantity) const;  ///< true, too, where it was not judged
 };
 
-/// tolerance: as in find_allowed().
+/// Judges a field:
+///
+///  1. The errors that right fields of this mesh show, digits and noise of the file, and the quadrature of
+///  the
+///     loads give the allowed maximum of each quantity. tolerance: replaces the mesh's errors in loads,
+///     motion, pressure and tractions.
+///  2. Normal load and pressure, moment and force are compared with the scene's.
+///  3. |q| is compared with its bound, in the slip ring and in each cell.
+///  4. Motion and tractions are compared with the right answer, slip directions and gap with the law.
 Verdict reach_verdict(const Examination& examination, std::optional<double> tolerance);
+
+/// The relative error of the moment that the scene imposes or its imposed twist causes. A scene's ratio may
+/// refer to the exact limit moment, to the limit of the field's own pressure or, where the exact one is not
+/// known, to the limit of the right pressure on a finer mesh. None: the moment is not known.
+std::optional<double> moment_error(const Examination& examination);
+
+/// Whether the scene has no tangential force and imposes no displacement.
+bool is_torsion(const solver::Scene& scene);
+
+/// "5.1 % too low".
+std::string off_text(double error);
+
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& parts);
+
+/// The first sentence of a field that is right within its mesh.
+std::string right_text(const Examination& examination, const Verdict& verdict);
 
 }  // namespace slipstick::convergence

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "convergence/exchange/given_contact.hpp"
 #include "solver/contact/fitted_motion.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
@@ -24,8 +25,8 @@ ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKerne
   return u;
 }
 
-/// A pressure as the answer to the normal contact: the surfaces' approach is the mean gap under it, and the
-/// gap that is open above the least is what its complementarity leaves.
+/// A pressure as the answer to the normal contact: the surfaces' approach is the mean gap under it; the
+/// energy of the gaps above the least one is its complementarity.
 NormalSolution describe_pressure(const Scene& scene, const Model& model, const ArrayXd& pressure) {
   NormalSolution normal;
   normal.status = solver::Status::converged;
@@ -40,48 +41,23 @@ NormalSolution describe_pressure(const Scene& scene, const Model& model, const A
   return normal;
 }
 
-/// Motions by which slip is not fixed yet, the rotation last, and the sum of those that the scene imposes.
-struct Motions {
-  std::vector<ArrayXd> free;
-  ArrayXd imposed;
-};
-
-Motions motions_of(const TangentialProblem& problem, const Grid& grid) {
-  const Index cells = grid.cells();
-  Motions motions{{}, ArrayXd::Zero(2 * cells)};
-  if (problem.force || problem.displacement) {
-    for (const Index k : {0, 1}) {
-      ArrayXd translation = ArrayXd::Zero(2 * cells);
-      translation.segment(k * cells, cells).setOnes();
-      if (problem.force) motions.free.push_back(translation);
-      if (problem.displacement) {
-        motions.imposed += (*problem.displacement)[static_cast<std::size_t>(k)] * translation;
-      }
-    }
-  }
-  const ArrayXd rotation = solver::rotation_field(grid);
-  if (problem.twist) motions.imposed += *problem.twist * rotation;
-  if (!problem.twist) motions.free.push_back(rotation);
-  return motions;
-}
-
 TangentialSolution describe_tractions(const Scene& scene, const Model& model,
-                                      const TangentialProblem& problem, const ArrayXd& traction) {
+                                      const TangentialProblem& problem, const ArrayXd& pressure,
+                                      const ArrayXd& traction) {
+  const GivenContact contact(model, solver::elasticity(scene, model, solver::Reduction(model.grid)), {},
+                             pressure, traction);
+  const bool translates = problem.force || problem.displacement;
+  State state = find_state(
+      contact, {.twist = problem.twist, .displacement = problem.displacement, .translates = translates});
+  const ArrayXd& bound = problem.friction_bound;
   TangentialSolution found;
   found.status = solver::Status::converged;
   found.traction = traction;
-  found.elastic_displacement = applied(scene, model, solver::tangential_kernel(), traction);
-  const ArrayXd& bound = problem.friction_bound;
-  const Motions motions = motions_of(problem, model.grid);
-  ArrayXd displacement = found.elastic_displacement - motions.imposed;
-  if (problem.initial_displacement.size() > 0) displacement += problem.initial_displacement;
-  const FittedMotion fitted = solver::fit_motion(displacement, traction, bound, motions.free);
-  found.slip = fitted.slip;
+  found.elastic_displacement = contact.elastic_displacement;
+  found.slip = std::move(state.slip);
   found.stick = ((bound > 0.0) && solver::norms(traction) < (1.0 - solver::kOnCircle) * bound).cast<double>();
-  const Coefficients& z = fitted.coefficients;
-  found.twist = problem.twist.value_or(z.size() > 0 ? z[z.size() - 1] : 0.0);
-  if (problem.force) found.displacement = {z[0], z[1]};
-  if (problem.displacement) found.displacement = *problem.displacement;
+  found.twist = state.twist;
+  found.displacement = state.displacement;
   return found;
 }
 
@@ -90,7 +66,7 @@ void require_one_load(const Scene& scene) {
   if (steps == 1 && scene.substeps == 1) return;
   throw InputError(scene.source.string(), scene.substeps == 1 ? "step" : "solver.substeps",
                    std::to_string(steps * static_cast<std::size_t>(scene.substeps)),
-                   "one load beside solver.program: a field does not say what happened before");
+                   "one load, with solver.program: a field does not show the steps before");
 }
 
 }  // namespace
@@ -109,7 +85,8 @@ solver::Solution describe_given(Scene scene, const GivenFields& fields) {
   const Step& step = scene.steps.front();
   solution.normal = describe_pressure(scene, model, fields.pressure / model.stress_unit);
   const solver::LoadStep loads = solver::load_step(scene, model, step, solution.normal.pressure, {});
-  solution.tangential = describe_tractions(scene, model, loads.problem, fields.traction / model.stress_unit);
+  solution.tangential = describe_tractions(scene, model, loads.problem, solution.normal.pressure,
+                                           fields.traction / model.stress_unit);
   solution.status = solver::Status::converged;
   solution.loads = step;
   solution.twist_angle = solution.tangential.twist;

@@ -124,7 +124,7 @@ Json check_program(const RunSpec& base, const Scene& scene, const Meshes& meshes
   CheckOptions options;
   if (const Json& own = answer["program"]["own"]; own.contains("twist_angle"))
     options.twist = own["twist_angle"];
-  return check_field(on_finest_mesh(base, scene, meshes), fields, options);
+  return to_json(check_field(on_finest_mesh(base, scene, meshes), fields, options));
 }
 
 /// By its certificate, or by what `check` says of the field of another program; by its pressure where there

@@ -239,7 +239,8 @@ Json judge_peers(const std::filesystem::path& inputs) {
   const solver::Scene scene = solver::read_scene(inputs / "scenes" / "paper.toml", {"load.moment_ratio=0.9"});
   Json rows = Json::array();
   for (const KnownField& field : kFields) {
-    const Json result = check_field(scene, inputs / "check" / "fields" / field.file, {.twist = field.twist});
+    const Json result =
+        to_json(check_field(scene, inputs / "check" / "fields" / field.file, {.twist = field.twist}));
     Json& row = rows.emplace_back(
         Json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}});
     for (const char* key : {"verdict", "why", "cells", "twist_error", "moment_error", "stick_radius_error",

@@ -35,15 +35,14 @@ class CheckCoarseBadField : public testing::TestWithParam<Coarse> {
 TEST_P(CheckCoarseBadField, MomentOnePercentOff) {
   for (const double factor : {0.99, 1.01}) {
     const Json result = find_bad(solved(scene_of(GetParam().scene, GetParam().cells, load(factor))), scene_,
-                                 HasSubstr("the moment is"));
+                                 BreaksFirst("moment_error"));
     EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
-    EXPECT_THAT(why(result), HasSubstr("it solves its own grid's problem"));
   }
 }
 
 TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
   solver::Solution stopped;
-  // A last step may take it further than was asked for.
+  // A last step may take it beyond the tolerance.
   for (const char* tolerance : {"1e-2", "2e-2", "4e-2", "8e-2"}) {
     stopped = solver::solve(scene_of(
         GetParam().scene, GetParam().cells,
@@ -51,7 +50,7 @@ TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
     if (stopped.certificate.gap >= 3e-3) break;
   }
   ASSERT_GE(stopped.certificate.gap, 3e-3);
-  find_bad(rows_of(stopped), scene_, Not(HasSubstr("it looks like")));
+  find_bad(rows_of(stopped), scene_, names_none());
 }
 
 // The moment is right, and every cell is within its bound. |q|/p shows the mistake.
@@ -59,15 +58,12 @@ TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
   find_bad(solved(scene_of(GetParam().scene, GetParam().cells,
                            {fmt::format("load.moment={}", solution_.moment), "contact.friction=0.098"})),
            scene_,
-           AllOf(HasSubstr("the moment is right"), HasSubstr("|q|/p in the slip ring is 2 % too low"),
-                 HasSubstr("friction coefficient of 0.098 in place of 0.1")));
+           AllOf(Not(Breaks("moment_error")), IsOff("friction", -0.02),
+                 names(Mistake::friction_coefficient, 0.098)));
 }
 
-// The given twist is wrong, and no sentence calls it right.
 TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
-  find_bad(rows_, scene_,
-           AllOf(HasSubstr("the twist is 1 % too high"), HasSubstr("not that of these tractions"),
-                 Not(HasSubstr("the twist is right"))),
+  find_bad(rows_, scene_, AllOf(IsOff("twist", 0.01), names(Mistake::other_twist, solution_.twist_angle)),
            1.01 * solution_.twist_angle);
 }
 
@@ -83,14 +79,12 @@ class CheckBadField : public testing::Test {
 };
 
 TEST_F(CheckBadField, AnotherFrictionCoefficient) {
-  find_bad(
-      with_tractions_times(rows_, 0.95), scene_,
-      AllOf(HasSubstr("moment is 5 % too low"), HasSubstr("friction coefficient of 0.095 in place of 0.1")));
+  find_bad(with_tractions_times(rows_, 0.95), scene_,
+           AllOf(IsOff("moment_error", -0.05), names(Mistake::friction_coefficient, 0.095)));
   for (const double factor : {1.05, 1.2}) {  // the second beyond what friction can carry
     const Json result =
         find_bad(with_tractions_times(rows_, factor), scene_,
-                 AllOf(HasSubstr("|q| exceeds mu p"),
-                       HasSubstr(fmt::format("friction coefficient of {:.4g}", 0.1 * factor))));
+                 AllOf(Breaks("friction_bound"), names(Mistake::friction_coefficient, 0.1 * factor)));
     // Displacements and the twist that fits them grow with the tractions.
     EXPECT_NEAR(result["twist_angle"].get<double>() / solution_.twist_angle, factor, 1e-3);
   }
@@ -104,9 +98,9 @@ TEST(CheckBadCell, IsHalved) {
     const auto largest =
         std::ranges::max_element(rows, {}, [](const FieldRow& r) { return std::hypot(r[3], r[4]); });
     for (const std::size_t c : {3, 4}) (*largest)[c] *= 0.5;
-    const Json result = find_bad(rows, scene, HasSubstr("of one cell"));
-    EXPECT_THAT(why(result),
-                HasSubstr(fmt::format("x1 = {:.3g}, x2 = {:.3g} m", (*largest)[0], (*largest)[1])));
+    const Json result = find_bad(rows, scene, BreaksFirst("traction_cell"));
+    EXPECT_THAT(why(result), AllOf(HasSubstr(fmt::format("{:.3g}", (*largest)[0])),
+                                   HasSubstr(fmt::format("{:.3g}", (*largest)[1]))));
   }
 }
 
@@ -119,10 +113,7 @@ TEST_F(CheckBadField, NamesNoCauseThatLeavesItBad) {
   };
   for (const FieldRows& rows : {shifted(0.5), shifted(0.0), shifted(-1.0), with_tractions_times(rows_, 3e-4),
                                 changed(rows_, [](FieldRow& r) { r[4] = 0.0; })}) {
-    const std::string text = why(check_rows(rows, scene_));
-    EXPECT_THAT(text, Not(HasSubstr("slipping cells that keep"))) << text;
-    EXPECT_THAT(text, Not(HasSubstr("kernel"))) << text;
-    EXPECT_THAT(text, Not(HasSubstr("Poisson"))) << text;
+    EXPECT_THAT(check_rows(rows, scene_), names_none());
   }
 }
 
@@ -137,18 +128,14 @@ TEST_F(CheckBadField, UnitsDoNotDecide) {
   }
 }
 
-// Two lines that a person reads first, percentages written out, and one gap.
-TEST_F(CheckBadField, SaysFirstWhatIsWrongByHowMuchAndWhere) {
-  const std::string text = check_text(check_rows(changed(rows_,
-                                                         [](FieldRow& r) {
-                                                           if (r[0] > 0.0) r[3] *= -3.0, r[4] *= -3.0;
-                                                         }),
-                                                 scene_));
-  const std::string first = text.substr(0, text.find('\n'));
-  EXPECT_THAT(first, AllOf(testing::StartsWith("bad: "), HasSubstr(" % "), HasSubstr("(allowed: ")));
-  EXPECT_THAT(text, Not(testing::ContainsRegex("[0-9]e[+][0-9]+ %")));
-  const std::string good = check_text(check_rows(rows_, scene_));
-  EXPECT_THAT(good, AllOf(Not(HasSubstr("inferred")), Not(HasSubstr("gap/energy"))));
+// The first line says good or bad, and percentages are written out.
+TEST_F(CheckBadField, SaysFirstWhatIsWrong) {
+  const FieldRows rows = changed(rows_, [](FieldRow& r) {
+    if (r[0] > 0.0) r[3] *= -3.0, r[4] *= -3.0;
+  });
+  EXPECT_THAT(check_rows(rows, scene_).text,
+              AllOf(testing::StartsWith("bad: "), Not(testing::ContainsRegex("[0-9]e[+][0-9]+ %"))));
+  EXPECT_THAT(check_rows(rows_, scene_).text, testing::StartsWith("good: "));
 }
 
 // The normal contact's tolerance decides whether such a cell touches at all.
@@ -178,8 +165,8 @@ FieldRows sliding_rows(int cells, double radius) {
 TEST(CheckSlidingField, IsJudgedByItsRadiusAndItsMoment) {
   for (const int cells : {32, 48}) {
     for (const double radius : {0.79, 0.97, 1.0}) {
-      const Json result = find_bad(sliding_rows(cells, radius), scene_of("paper", cells),
-                                   HasSubstr("all of the contact slips"));
+      const Json result =
+          find_bad(sliding_rows(cells, radius), scene_of("paper", cells), BreaksFirst("moment_error"));
       EXPECT_NEAR(result["moment_error"], radius / 0.9 - 1.0, 5e-3);
       EXPECT_EQ(judgement(result, "pressure")["holds"], radius == 1.0);
     }
@@ -197,24 +184,23 @@ TEST(CheckSlidingField, IsNotARightOneNextToTheLimit) {
 
 TEST_F(CheckBadField, Twists) {
   const double twist = solution_.twist_angle;
-  find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);
-  find_bad(rows_, scene_, HasSubstr("twice the compliance"), 2.0 * twist);
-  find_bad(rows_, scene_, HasSubstr("a twist in degrees"), twist * 180.0 / std::numbers::pi);
+  find_bad(rows_, scene_, AllOf(IsOff("twist", -0.5), names(Mistake::one_compliance)), 0.5 * twist);
+  find_bad(rows_, scene_, names(Mistake::compliance_factor, 2.0), 2.0 * twist);
+  find_bad(rows_, scene_, names(Mistake::twist_in_degrees), twist * 180.0 / std::numbers::pi);
   const double normalised = find_oracle(scene_).oracle->state.twist;
-  find_bad(rows_, scene_, HasSubstr("the normalised twist of a result"), normalised);
+  find_bad(rows_, scene_, names(Mistake::normalised_twist), normalised);
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
 }
 
 TEST_F(CheckBadField, TwistInMilliradians) {
-  find_bad(rows_, scene_, HasSubstr("a twist in mrad"), 1e3 * solution_.twist_angle);
+  find_bad(rows_, scene_, names(Mistake::twist_in_mrad), 1e3 * solution_.twist_angle);
 }
 
 // The step before the last of four, written with the pressure of the last.
 TEST(CheckCause, TractionsOneStepLate) {
   const solver::Scene scene = scene_of("paper", 40);
-  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, HasSubstr("the last of 4"));
-  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene,
-           Not(HasSubstr("one step late")));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, names(Mistake::late_step, 4.0));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene, Not(names(Mistake::late_step)));
 }
 
 TEST(CheckCause, RowsAreLost) {
@@ -224,9 +210,9 @@ TEST(CheckCause, RowsAreLost) {
     const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
     FieldRows inside = rows;
     inside.erase(inside.begin() + (middle - rows.begin()), inside.begin() + (middle - rows.begin()) + 5);
-    find_bad(inside, scene, HasSubstr("lost rows: 5 cells"));
+    find_bad(inside, scene, names(Mistake::lost_rows, 5.0));
     rows.resize(rows.size() - rows.size() / 10);
-    find_bad(rows, scene, HasSubstr("lost rows"));
+    find_bad(rows, scene, names(Mistake::lost_rows));
   }
 }
 
@@ -234,21 +220,21 @@ TEST(CheckCause, AnotherLayer) {
   const std::vector<std::string> layer{"lower.layer={thickness=1e-4,young_modulus=420e9,poisson_ratio=0.25}",
                                        "contact.coupling=none"};
   const solver::Scene scene = scene_of("paper", 40, layer);
-  find_bad(solved(scene_of("paper", 40)), scene, HasSubstr("the layer on the lower body ignored"));
+  find_bad(solved(scene_of("paper", 40)), scene, names(Mistake::layer_ignored));
   find_bad(solved(scene_of("paper", 32, {layer[0], layer[1], "lower.layer.thickness=3e-4"})), scene,
-           HasSubstr("a layer of 0.0003 m in place of 0.0001 m"));
+           names(Mistake::layer_thickness, 3e-4));
   find_bad(solved(scene_of("paper", 40,
                            {layer[0], layer[1], "lower.young_modulus=420e9", "lower.poisson_ratio=0.25",
                             "lower.layer.young_modulus=210e9", "lower.layer.poisson_ratio=0.3"})),
-           scene, HasSubstr("the constants of the lower body and its layer exchanged"));
+           scene, names(Mistake::layer_exchanged));
 }
 
 TEST(CheckCause, OtherModuli) {
   const solver::Scene scene = scene_of("paper", 40);
   find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=420e9", "lower.young_modulus=420e9"})), scene,
-           HasSubstr("the compliance of one body only"));
+           names(Mistake::one_compliance));
   find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=290e9", "lower.young_modulus=290e9"})), scene,
-           HasSubstr("elastic moduli 1.38 times those of the scene"));
+           names(Mistake::modulus_factor, 1.38));
 }
 
 TEST(CheckCause, PositionsFromTheGridsCornerAreAConvention) {
@@ -257,7 +243,7 @@ TEST(CheckCause, PositionsFromTheGridsCornerAreAConvention) {
   const double half1 = 24.0 * solution.grid.h1;
   const double half2 = 24.0 * solution.grid.h2;
   const FieldRows rows = changed(rows_of(solution), [&](FieldRow& row) { row[0] += half1, row[1] += half2; });
-  EXPECT_THAT(find_good(rows, scene)["conventions"].dump(), HasSubstr("from the grid's corner"));
+  EXPECT_THAT(find_good(rows, scene)["conventions"].dump(), HasSubstr("corner"));
 }
 
 TEST_F(CheckBadField, NotJudged) {

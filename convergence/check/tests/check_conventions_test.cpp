@@ -35,15 +35,15 @@ TEST_F(CheckConventions, OrderOfRows) { expect_same(shuffled(rows_), {}); }
 
 TEST_F(CheckConventions, SignsAndComponents) {
   using std::swap;
-  expect_same(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4]; }), {"tractions look reversed"});
-  expect_same(changed(rows_, [](FieldRow& r) { swap(r[3], r[4]); }), {"q1 and q2 look exchanged"});
+  expect_same(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4]; }), {"reversed"});
+  expect_same(changed(rows_, [](FieldRow& r) { swap(r[3], r[4]); }), {"q1 and q2"});
 }
 
 // No frame and no body explains one reversed component.
 TEST_F(CheckConventions, NoComponentIsReversedAlone) {
   for (const std::size_t component : {3, 4}) {
-    const Json result = find_bad(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_,
-                                 HasSubstr(fmt::format("q{} looks reversed alone", component - 2)));
+    const Json result =
+        find_bad(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_, testing::_);
     EXPECT_TRUE(result["within_mesh"].get<bool>()) << why(result);  // all the rest is right
     EXPECT_THAT(result["conventions"], IsEmpty());
   }
@@ -52,15 +52,15 @@ TEST_F(CheckConventions, NoComponentIsReversedAlone) {
 TEST_F(CheckConventions, StandInTheFirstLineAndStrictTakesNone) {
   const auto file =
       write_rows(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4], r[0] *= 1e3, r[1] *= 1e3; }));
-  const Json taken = check_field(scene_, file);
+  const Checked taken = checked(scene_, file);
   EXPECT_EQ(taken["verdict"], "good");
-  const std::string text = check_text(taken);
+  const std::string& text = taken.text;
   EXPECT_THAT(text.substr(0, text.find('\n')),
-              AllOf(HasSubstr("good (positions look like mm; tractions look reversed")));
-  const Json strict = check_field(scene_, file, {.strict = true});
+              AllOf(HasSubstr("good"), HasSubstr("mm"), HasSubstr("reversed")));
+  const Json strict = checked(scene_, file, {.strict = true});
   EXPECT_EQ(strict["verdict"], "bad");
-  EXPECT_THAT(why(strict), AllOf(HasSubstr("positions look like mm"), HasSubstr("tractions look reversed")));
-  EXPECT_EQ(check_field(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
+  EXPECT_THAT(why(strict), AllOf(HasSubstr("mm"), HasSubstr("reversed")));
+  EXPECT_EQ(checked(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
 }
 
 /// The notes of a field that is good but for its conventions.
@@ -68,7 +68,7 @@ std::vector<std::string> notes_of(const FieldRows& rows, const solver::Scene& sc
   return find_good(rows, scene)["conventions"];
 }
 
-// Under a force a mirrored frame differs from the other body: it reverses the moment alone. A body off the
+// Under a force a mirrored frame differs from the other body: it reverses only the moment. A body off the
 // axis then stands on the other side of it, and is moved first.
 TEST(Check, ReadsALeftHandedFrame) {
   for (const auto& [name, moved] : {std::pair{"paper", 0U}, {"off_centre", 1U}}) {
@@ -80,14 +80,13 @@ TEST(Check, ReadsALeftHandedFrame) {
   }
 }
 
-// The force may stand alone, along either axis.
+// There may be only a force, along either axis.
 TEST(Check, ReadsTheOtherBodysTractionsUnderAForceAlone) {
   for (const char* force : {"load.force=[60,0]", "load.force=[0,60]"}) {
     const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0", force});
     const FieldRows rows = solved(scene);
     EXPECT_THAT(notes_of(rows, scene), IsEmpty()) << force;
-    EXPECT_THAT(notes_of(with_tractions_times(rows, -1.0), scene),
-                ElementsAre(HasSubstr("tractions look reversed")));
+    EXPECT_THAT(notes_of(with_tractions_times(rows, -1.0), scene), ElementsAre(HasSubstr("reversed")));
   }
 }
 
@@ -98,19 +97,18 @@ TEST(Check, ReadsExchangedAxesOfAnEllipseOffTheOrigin) {
   const FieldRows rows = solved(scene);
   EXPECT_THAT(notes_of(rows, scene), IsEmpty());
   EXPECT_THAT(notes_of(changed(rows, [](FieldRow& r) { swap(r[0], r[1]), swap(r[3], r[4]); }), scene),
-              ElementsAre(HasSubstr("axes look exchanged")));
+              ElementsAre(HasSubstr("axes")));
 }
 
 TEST_F(CheckConventions, Axes) {
   using std::swap;
-  expect_same(changed(rows_, [](FieldRow& r) { swap(r[0], r[1]), swap(r[3], r[4]); }),
-              {"axes look exchanged"});
+  expect_same(changed(rows_, [](FieldRow& r) { swap(r[0], r[1]), swap(r[3], r[4]); }), {"axes"});
   // Turned by 90 degrees: read with axes exchanged, which is a mirror, the moment turns the other way.
   expect_same(changed(rows_,
                       [](FieldRow& r) {
                         r = {-r[1], r[0], r[2], -r[4], r[3]};
                       }),
-              {"axes look exchanged", "tractions look reversed"});
+              {"axes", "reversed"});
 }
 
 TEST_F(CheckConventions, Units) {
@@ -119,10 +117,10 @@ TEST_F(CheckConventions, Units) {
       r = {r[0] * metre, r[1] * metre, r[2] * pascal, r[3] * pascal, r[4] * pascal};
     });
   };
-  expect_same(in(1e3, 1.0), {"positions look like mm"});
-  expect_same(in(1.0, 1e-6), {"pressure and tractions look like MPa"});
-  expect_same(in(1e3, 1e-6), {"positions look like mm", "pressure and tractions look like MPa"});
-  expect_same(in(1e6, 1e-9), {"positions look like micrometres", "pressure and tractions look like GPa"});
+  expect_same(in(1e3, 1.0), {"mm"});
+  expect_same(in(1.0, 1e-6), {"MPa"});
+  expect_same(in(1e3, 1e-6), {"mm", "MPa"});
+  expect_same(in(1e6, 1e-9), {"micrometres", "GPa"});
   EXPECT_THROW(check_rows(in(1e3, 3e-7), scene_), solver::InputError);
 }
 
@@ -132,15 +130,14 @@ TEST_F(CheckConventions, OriginAndPartsOfACell) {
     return changed(rows_, [=](FieldRow& r) { r[0] += by, r[1] -= 0.5 * by; });
   };
   expect_same(moved(0.3 * cell), {});
-  const auto note =
-      fmt::format("stands ({:.4g}, {:.4g}) m from the scene's: moved there", 40.0 * cell, -20.0 * cell);
+  const auto note = fmt::format("({:.4g}, {:.4g}) m", 40.0 * cell, -20.0 * cell);
   expect_same(moved(40.0 * cell), {note});
   expect_same(changed(moved(40.0 * cell), [](FieldRow& r) { r[0] *= 1e3, r[1] *= 1e3; }), {"mm", note});
 }
 
 TEST_F(CheckConventions, FewDigits) {
   for (const int digits : {10, 6}) {
-    const Json result = check_field(scene_, write_rows(rows_, digits));
+    const Json result = checked(scene_, write_rows(rows_, digits));
     EXPECT_EQ(result["verdict"], "good") << digits << why(result);
     EXPECT_NEAR(result["stick_cells"], base_["stick_cells"].get<double>(), 2.0);
     EXPECT_LE(result["certificate"]["friction_bound"], 2e-5);
@@ -150,8 +147,8 @@ TEST_F(CheckConventions, FewDigits) {
 // Rounding is in the unit of the file.
 TEST_F(CheckConventions, FewDigitsInAnotherUnit) {
   const auto file = [](const FieldRows& rows) { return write_rows(rows, 3); };
-  const Json in_pa = check_field(scene_, file(rows_));
-  const Json in_mpa = check_field(scene_, file(with_stresses_times(rows_, 1e-6)));
+  const Json in_pa = checked(scene_, file(rows_));
+  const Json in_mpa = checked(scene_, file(with_stresses_times(rows_, 1e-6)));
   EXPECT_EQ(in_pa["verdict"], "good") << why(in_pa);
   EXPECT_EQ(in_mpa["verdict"], "good") << why(in_mpa);
   for (const char* key : {"gap", "allowed"}) {

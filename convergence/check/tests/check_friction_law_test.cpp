@@ -6,7 +6,9 @@
 namespace slipstick::convergence {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 using Settings = std::vector<std::string>;
 
@@ -30,16 +32,15 @@ TEST(CheckFrictionLaw, FindsRightFieldsGood) {
 }
 
 TEST(CheckFrictionLaw, NamesTheLawThatWasUsed) {
-  find_bad(solved(under({})), under(kTresca), HasSubstr("Coulomb's law, with a coefficient of 0.1"));
-  find_bad(solved(under({})), under(kPower), HasSubstr("Coulomb's law, with a coefficient of 0.1"));
-  find_bad(solved(under(kTresca)), under({}), HasSubstr("Tresca's law, with a shear strength of 1e+08 Pa"));
+  find_bad(solved(under({})), under(kTresca), names(Mistake::coulomb_friction, 0.1));
+  find_bad(solved(under({})), under(kPower), names(Mistake::coulomb_friction, 0.1));
+  find_bad(solved(under(kTresca)), under({}), names(Mistake::tresca_friction, 1e8));
 }
 
 TEST(CheckFrictionLaw, NamesAWrongStrength) {
   Settings stronger = kTresca;
   stronger.back() = "contact.shear_strength=1.1e8";
-  find_bad(solved(under(stronger)), under(kTresca),
-           HasSubstr("a friction 1.1 times that of the scene's law"));
+  find_bad(solved(under(stronger)), under(kTresca), names(Mistake::friction_factor, 1.1));
 }
 
 // Cells that the edge cuts may carry a part of the strength; no cell carries more.
@@ -53,13 +54,13 @@ TEST(CheckFrictionLaw, FindsAStrongerInterfaceBadOnCoarseMeshes) {
         find_bad(solved(scene_of("paper", cells,
                                  {kTresca[0], fmt::format("contact.shear_strength={}", strength),
                                   fmt::format("load.moment={}", right.moment)})),
-                 scene, HasSubstr("allowed"));
+                 scene, testing::_);
       }
     }
   }
 }
 
-// A cell of which the contact covers a part may carry that part of the strength.
+// A cell that the contact covers in part may carry that part of the strength.
 TEST(CheckFrictionLaw, LeavesCellsOpenThatTheEdgeCuts) {
   Settings off_centre = kTresca;
   off_centre.insert(off_centre.end(), {"grid.extent=[1.9564e-3,1.9564e-3]", "upper.at=[5.223e-5,-2.555e-5]"});
@@ -75,24 +76,23 @@ TEST(CheckFrictionLaw, NamesAnotherExponentAndTheMeanPressure) {
   Settings linear = kPower;
   linear[1] = "contact.friction=20";
   linear[2] = "contact.friction_exponent=0.75";
-  find_bad(solved(under(linear)), under(kPower), HasSubstr("n = 0.75 in place of"));
-  find_bad(solved(under(kPower)), under({}), HasSubstr("n = 0.50 in place of"));
+  find_bad(solved(under(linear)), under(kPower), names(Mistake::power_friction, 0.75));
+  find_bad(solved(under(kPower)), under({}), names(Mistake::power_friction, 0.5));
   const solver::Solution solution = solver::solve(under({}));
   const double mean =
       solution.normal_load / static_cast<double>(solution.contact_cells) / solution.grid.cell_area();
   find_bad(solved(under({kTresca[0], fmt::format("contact.shear_strength={}", 0.1 * mean)})), under({}),
-           HasSubstr("mu times the mean pressure"));
+           names(Mistake::mean_friction));
 }
 
 TEST(CheckFrictionLaw, SpeaksOfTheScenesLaw) {
   const FieldRows field = solved(under({}));
   for (const auto& [settings, law] :
        {std::pair{kTresca, "Tresca's law"}, {kCapped, "capped law"}, {kPower, "power law"}}) {
-    const std::string said = check_text(check_rows(field, under(settings)));
-    EXPECT_THAT(said, AllOf(HasSubstr("bad"), Not(HasSubstr("Coulomb's law is")),
-                            Not(HasSubstr("Coulomb's law holds"))));
+    const std::string said = check_rows(field, under(settings)).text;
+    EXPECT_THAT(said.substr(0, said.find("likely")), Not(HasSubstr("Coulomb")));
     EXPECT_THAT(
-        check_text(check_rows(solved(under(settings)), under(settings))),
+        check_rows(solved(under(settings)), under(settings)).text,
         AllOf(HasSubstr(std::string(law)), Not(HasSubstr("above mu p by")), Not(HasSubstr("Coulomb: 0"))));
   }
 }
@@ -107,7 +107,7 @@ TEST(CheckFrictionLaw, TakesAMap) {
   stream.close();
   const solver::Scene scene = under({fmt::format("contact.friction_map=\"{}\"", map.string())}, 32);
   find_good(solved(scene), scene);
-  find_bad(solved(under({}, 32)), scene, HasSubstr("|q|"));
+  find_bad(solved(under({}, 32)), scene, testing::AnyOf(Breaks("friction"), Breaks("friction_bound")));
 }
 
 }  // namespace

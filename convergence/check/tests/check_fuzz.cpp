@@ -1,5 +1,7 @@
 // Any text is judged as a field of tractions or as a loop, or is refused.
 
+#include <nlohmann/json.hpp>
+
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"
 #include "solver/input/tests/fuzz_file.hpp"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,7 +19,7 @@
 #include "solver/input/field_file.hpp"
 #include "solver/solve.hpp"
 
-/// Fields as other programs write them, made for a scene, and what check finds in them.
+/// Fields as other programs write them, made for a scene, and their checks.
 namespace slipstick::convergence {
 
 /// x1, x2, pressure, q1, q2.
@@ -85,9 +86,56 @@ inline solver::Scene scene_of(const std::string& name, int cells = 32,
   return solver::read_scene(kScenes + "/" + name + ".toml", overrides);
 }
 
-inline Json check_rows(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
-  return check_field(scene, write_rows(rows), {.twist = twist});
+/// A checked field: its result as JSON, and the verdict and causes of which the sentences are made.
+struct Checked : Json {
+  Verdict verdict;
+  std::vector<Cause> causes;
+  std::string text;
+};
+inline void PrintTo(const Checked& result, std::ostream* stream) { *stream << result["why"]; }
+
+inline Checked checked(const solver::Scene& scene, const std::filesystem::path& file,
+                       const CheckOptions& options = {}) {
+  FieldCheck check = check_field(scene, file, options);
+  std::string text = check_text(check);
+  return {to_json(check), std::move(check.verdict), std::move(check.explanation.causes), std::move(text)};
 }
+
+inline Checked check_rows(const FieldRows& rows, const solver::Scene& scene,
+                          std::optional<double> twist = {}) {
+  return checked(scene, write_rows(rows), {.twist = twist});
+}
+
+/// A judged quantity does not hold.
+MATCHER_P(Breaks, quantity, "") { return !arg.verdict.holds(quantity); }
+
+/// The first sentence is about this quantity.
+MATCHER_P(BreaksFirst, quantity, "") {
+  const auto& judged = arg.verdict.judged;
+  const auto first =
+      std::ranges::find_if(judged, [](const Judged& item) { return !item.holds() && !item.wrong.empty(); });
+  return first != judged.end() && first->quantity == quantity;
+}
+
+/// A quantity is off by a signed relative error, in two digits.
+MATCHER_P2(IsOff, quantity, error, "") {
+  return std::ranges::any_of(arg.verdict.judged, [&](const Judged& item) {
+    return item.quantity == quantity && !item.holds() &&
+           std::abs((item.low ? -item.value : item.value) - error) <= 0.05 * std::abs(error);
+  });
+}
+
+/// A cause is named, with its number if one is given, in two digits.
+MATCHER_P(Names, cause, "") {
+  const Cause& named = cause;
+  return std::ranges::any_of(arg.causes, [&](const Cause& each) {
+    return each.mistake == named.mistake &&
+           !(std::abs(each.found - named.found) > 5e-3 * std::abs(named.found));
+  });
+}
+
+inline auto names(Mistake mistake, double found = NAN) { return Names(Cause{mistake, found}); }
+inline auto names_none() { return testing::Field(&Checked::causes, testing::IsEmpty()); }
 
 inline FieldRows solved(const solver::Scene& scene) { return rows_of(solver::solve(scene)); }
 
@@ -98,23 +146,24 @@ inline FieldRows sampled(const solver::Scene& scene) {
   return read_rows(file);
 }
 
-inline Json check_peer(const std::string& name, std::optional<double> twist = {}) {
-  return check_field(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", {.twist = twist});
+inline Checked check_peer(const std::string& name, std::optional<double> twist = {}) {
+  return checked(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", {.twist = twist});
 }
 
 inline std::string why(const Json& result) { return result["why"]; }
 
-inline Json find_good(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
-  Json result = check_rows(rows, scene, twist);
+inline Checked find_good(const FieldRows& rows, const solver::Scene& scene,
+                         std::optional<double> twist = {}) {
+  Checked result = check_rows(rows, scene, twist);
   EXPECT_EQ(result["verdict"], "good") << scene.name << ", " << scene.cells[0] << " cells: " << why(result);
   return result;
 }
 
-inline Json find_bad(const FieldRows& rows, const solver::Scene& scene,
-                     const testing::Matcher<std::string>& reason, std::optional<double> twist = {}) {
-  Json result = check_rows(rows, scene, twist);
+inline Checked find_bad(const FieldRows& rows, const solver::Scene& scene,
+                        const testing::Matcher<const Checked&>& reason, std::optional<double> twist = {}) {
+  Checked result = check_rows(rows, scene, twist);
   EXPECT_EQ(result["verdict"], "bad") << why(result);
-  EXPECT_THAT(why(result), reason);
+  EXPECT_THAT(result, reason);
   return result;
 }
 

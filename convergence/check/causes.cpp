@@ -1,0 +1,292 @@
+#include "convergence/check/causes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "convergence/oracle/errors.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/model/make_model.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Material;
+using solver::Scene;
+
+/// Cells of a field up to which some dozen scenes are solved: a second or two of work.
+constexpr double kQuickCells = 128.0 * 128.0;
+
+struct Body {
+  Material Scene::*member;
+  const char* name;
+};
+constexpr std::array<Body, 2> kBodies{{{&Scene::lower, "lower"}, {&Scene::upper, "upper"}}};
+
+/// How far a field's pressure is from that of another scene.
+double off_from(const Examination& e, const Scene& scene) {
+  try {
+    const solver::Model model = solver::make_model(scene);
+    const GivenContact contact = pose(e.read.field, model, model.threads);
+    const auto right = find_scene_pressure(contact, scene, model);
+    return right ? right->off : std::numeric_limits<double>::infinity();
+  } catch (const solver::InputError&) {  // no scene that can be solved
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+struct MistakenScene {
+  Cause cause;
+  Scene scene;
+};
+
+/// Scenes with one mistake each.
+std::vector<MistakenScene> mistaken_scenes(const Scene& scene) {
+  std::vector<MistakenScene> mistakes;
+  const auto add = [&](const Cause& cause, const auto& change) {
+    change(mistakes.emplace_back(MistakenScene{cause, scene}).scene);
+  };
+  for (const Body& each : kBodies) {
+    const auto member = each.member;
+    const Material& body = scene.*member;
+    if (!std::isinf(body.young_modulus)) {
+      add({Mistake::one_compliance}, [&](Scene& s) {
+        s.*member = {std::numeric_limits<double>::infinity(), 0.0};
+      });
+    }
+    if (!body.coating) continue;
+    add({.mistake = Mistake::layer_ignored, .subject = each.name},
+        [&](Scene& s) { (s.*member).coating.reset(); });
+    add({.mistake = Mistake::layer_exchanged, .subject = each.name}, [&](Scene& s) {
+      Material& other = s.*member;
+      std::swap(other.young_modulus, other.coating->young_modulus);
+      std::swap(other.poisson_ratio, other.coating->poisson_ratio);
+    });
+  }
+  if (is_coated(scene))
+    add({Mistake::layer_on_other_body}, [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
+  if (scene.layer.kind != nullptr) add({Mistake::layer_between_ignored}, [](Scene& s) { s.layer = {}; });
+  for (const double factor : {0.5, 2.0}) {
+    add({Mistake::compliance_factor, factor}, [&](Scene& s) {
+      for (const Body& body : kBodies) (s.*body.member).young_modulus /= factor;
+    });
+    if (scene.surfaces.size() == 1 && scene.surfaces.front().shape == solver::Shape::sphere)
+      add({Mistake::radius_factor, factor}, [&](Scene& s) { s.surfaces.front().radius *= factor; });
+  }
+  return mistakes;
+}
+
+/// The factor within 1/kWidest and kWidest under which a changed scene is nearest, by golden sections of its
+/// logarithm.
+template <typename Off>
+std::pair<double, double> nearest_factor(const Off& off) {
+  constexpr double kWidest = 8.0;
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr int kSections = 14;
+  double low = -std::log(kWidest);
+  double high = std::log(kWidest);
+  double left = high - kGolden * (high - low);
+  double right = low + kGolden * (high - low);
+  double at_left = off(std::exp(left));
+  double at_right = off(std::exp(right));
+  for (int i = 0; i < kSections; ++i) {
+    if (at_left < at_right) {
+      high = std::exchange(right, left);
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = off(std::exp(left));
+    } else {
+      low = std::exchange(left, right);
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = off(std::exp(right));
+    }
+  }
+  return at_left < at_right ? std::pair{std::exp(left), at_left} : std::pair{std::exp(right), at_right};
+}
+
+std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
+  for (const auto& [member, name] : kBodies) {
+    if (!(e.scene.*member).coating) continue;
+    const double thickness = (e.scene.*member).coating->thickness;
+    const auto [factor, off] = nearest_factor([&, of = member](double times) {
+      Scene scene = e.scene;
+      (scene.*of).coating->thickness *= times;
+      return off_from(e, scene);
+    });
+    if (off <= allowed) return Cause{Mistake::layer_thickness, factor * thickness, thickness, name};
+  }
+  const auto [factor, off] = nearest_factor([&](double times) {
+    Scene scene = e.scene;
+    for (const Body& body : kBodies) {
+      Material& material = scene.*body.member;
+      material.young_modulus *= times;
+      if (material.coating) material.coating->young_modulus *= times;
+    }
+    return off_from(e, scene);
+  });
+  return off <= allowed ? std::optional(Cause{Mistake::modulus_factor, factor}) : std::nullopt;
+}
+
+/// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with
+/// one of them, solved on the field's cells, is the field's up to `allowed`. All that the pressure does not
+/// tell apart, and where none explains it, one with a fitted number (a layer's thickness, the moduli).
+/// Contacts of more than kQuickCells cells are not tried.
+std::vector<Cause> mistakes_in_pressure(const Examination& e, double allowed) {
+  const bool solved = e.reference.pressure && e.scene.pressure != solver::PressureModel::file;
+  if (!solved || static_cast<double>(e.contact.grid.cells()) > kQuickCells) return {};
+  std::vector<Cause> causes;
+  for (MistakenScene& mistaken : mistaken_scenes(e.scene)) {
+    const bool known = std::ranges::any_of(
+        causes, [&](const Cause& cause) { return sentence(cause) == sentence(mistaken.cause); });
+    if (known || !(off_from(e, mistaken.scene) <= allowed)) continue;
+    mistaken.cause.alternative = !causes.empty();
+    causes.push_back(std::move(mistaken.cause));
+  }
+  if (causes.empty()) {
+    if (auto cause = fitted_mistake(e, allowed)) causes.push_back(std::move(*cause));
+  }
+  return causes;
+}
+
+/// Rows that are missing, where the field has the scene's pressure up to `allowed` but for cells without any.
+std::optional<Cause> lost_rows(const Examination& e, double allowed) {
+  constexpr double kCarriesSomething = 0.05;  // of the largest pressure: no edge of any right field
+  if (!e.reference.pressure) return std::nullopt;
+  const ArrayXd& right = e.reference.pressure->values;
+  const ArrayXd& found = e.contact.pressure;
+  const ArrayXd there = (found > 0.0).cast<double>();
+  const auto lost = ((found == 0.0) && (right > kCarriesSomething * right.maxCoeff())).count();
+  const double off = (there * (found - right).abs()).sum() / (there * right).sum();
+  if (lost == 0 || !(off <= allowed)) return std::nullopt;
+  return Cause{Mistake::lost_rows, static_cast<double>(lost)};
+}
+
+/// Whether a pressure that is infinite somewhere has the exact values at cell centres, which miss its load.
+bool is_sampled_singularity(const Examination& e) {
+  constexpr double kSampled = 1e-3;  // relative error in L1 of exact values at cell centres, rounded
+  return e.exact.oracle && !std::isfinite(e.exact.oracle->peak_pressure) &&
+         pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m())
+                 .l1 <= kSampled;
+}
+
+/// The mistake that explains the ratio of the reported twist to the one that fits the tractions.
+Cause twist_mistake(const Examination& e, double allowed) {
+  struct Ratio {
+    double value;
+    Cause cause;
+  };
+  const auto compliance = [](const solver::Material& m) {  // of a coated body there is no single one
+    return m.coating ? std::nan("") : (1.0 + m.poisson_ratio) / m.young_modulus;
+  };
+  const double lower = compliance(e.scene.lower);
+  const double upper = compliance(e.scene.upper);
+  const auto& exact = e.exact.oracle;
+  const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
+  for (const auto& [ratio, cause] : {Ratio{lower / (lower + upper), {Mistake::one_compliance}},
+                                     {upper / (lower + upper), {Mistake::one_compliance}},
+                                     {2.0, {Mistake::compliance_factor, 2.0}},
+                                     {180.0 / std::numbers::pi, {Mistake::twist_in_degrees}},
+                                     {1e3, {Mistake::twist_in_mrad}},
+                                     {-1.0, {Mistake::twist_sign}},
+                                     {normalised, {Mistake::normalised_twist}}}) {
+    if (std::abs(e.state.twist / e.fitted.twist / ratio - 1.0) <= allowed) return cause;
+  }
+  return {Mistake::other_twist, e.fitted.twist};
+}
+
+/// Tractions that are right under a smaller load than the scene's: of the step before the last of N equal
+/// ones, or of any step where the reported twist belongs to the scene's load.
+std::optional<Cause> late_step(const Examination& e, const Verdict& verdict) {
+  constexpr double kMostSteps = 10.0;  // more steps are too close to distinguish them from other mistakes
+  const bool others_hold = std::ranges::all_of(verdict.judged, [](const Judged& item) {
+    return item.holds() || item.quantity == "moment_error" || item.quantity == "twist";
+  });
+  const auto error = moment_error(e);
+  if (!others_hold || !error || verdict.holds("moment_error") || !(*error < 0.0)) return std::nullopt;
+  const double steps = std::round(-1.0 / *error);
+  const double apart = std::abs(1.0 + *error * steps) / steps;
+  if (steps <= kMostSteps && apart <= std::min(verdict.allowed.moment, 0.05 / (steps * (steps + 1.0))))
+    return Cause{Mistake::late_step, steps};
+  const bool twist_of_scene =
+      e.twist_given && e.exact.oracle && !verdict.holds("twist") &&
+      std::abs(relative_error(e.state.twist, e.exact.oracle->twist_angle)) <= verdict.allowed.motion;
+  return twist_of_scene ? std::optional(Cause{Mistake::late_step_by_twist}) : std::nullopt;
+}
+
+/// A wrong kernel, with the twist that follows from it.
+Cause kernel_cause(const Hypothesis& kernel, const Examination& e) {
+  Cause cause = kernel.cause;
+  if (e.reference.right.scaled || !is_torsion(e.scene)) return cause;
+  cause.note = fmt::format(" (then the twist is {:.6g} rad, {})", kernel.twist,
+                           off_text(relative_error(kernel.twist, e.reference.right.twist)));
+  return cause;
+}
+
+/// Another friction, a wrong kernel, directions that slipping cells keep.
+std::vector<Cause> causes_in_tractions(const Examination& e, const Verdict& verdict,
+                                       const Diagnosis& diagnosis,
+                                       const std::optional<OtherFriction>& shown) {
+  constexpr double kCollapsed = 0.1;  // gap that a kernel leaves, over the gap that it explains
+  const Allowed& allowed = verdict.allowed;
+  // A cause lowers the gap to the allowed one, and clearly: the mesh may nearly explain it.
+  const double left = e.constant_cells ? allowed.discrete_gap : allowed.gap;
+  const double gap = std::min(left, kCollapsed * diagnosis.reference_kernel.gap);
+  if (const auto& friction = diagnosis.friction;
+      friction && friction->gap <= left && keeps_friction(e.contact, *shown, allowed.tractions))
+    return {friction->cause};
+  const bool directions = verdict.holds("friction") && verdict.holds("moment_error") &&
+                          !verdict.holds("slip_direction") && diagnosis.stick_area_explained;
+  std::vector<Cause> causes;
+  if (const auto& kernel = diagnosis.kernel) {
+    const bool explains = kernel->gap <= gap || (directions && kernel->stick_gap <= kIterationGap);
+    if (explains) causes.push_back(kernel_cause(*kernel, e));
+    if (!explains || kernel->gap <= gap) return causes;
+  } else if (!directions_explain(e.contact, e.reference.right, allowed.tractions)) {
+    return causes;
+  }
+  if (directions) causes.push_back({Mistake::kept_directions});
+  return causes;
+}
+
+}  // namespace
+
+Explanation explain(const Examination& e, const Verdict& verdict) {
+  const auto all_hold = [&](std::initializer_list<const char*> quantities) {
+    return std::ranges::all_of(quantities, [&](const char* quantity) { return verdict.holds(quantity); });
+  };
+  Explanation found;
+  std::optional<OtherFriction> friction;
+  if (!all_hold({"friction", "friction_bound", "slip_direction", "gap", "tractions", "twist", "motion"})) {
+    if (!all_hold({"friction", "friction_bound"}))
+      friction = friction_shown(e.contact, e.reference.right, e.reference.regions);
+    found.diagnosis =
+        diagnose(e.contact, e.scene.steps.front(), verdict.allowed.gap, friction, !is_coated(e.scene));
+  }
+  const bool right_pressure = all_hold({"normal_load_error", "pressure"});
+  if (!right_pressure) {
+    if (is_sampled_singularity(e)) {
+      found.causes = {{Mistake::sampled_singularity}};
+    } else if (const auto lost = lost_rows(e, verdict.allowed.pressure)) {
+      found.causes = {*lost};
+    } else if (verdict.holds("normal_load_error")) {
+      found.causes = mistakes_in_pressure(e, verdict.allowed.pressure);
+    }
+  }
+  if (const auto late = late_step(e, verdict)) found.causes.push_back(*late);
+  if (!found.diagnosis || !right_pressure || !found.causes.empty()) return found;
+  const bool others_hold = std::ranges::all_of(
+      verdict.judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
+  found.causes = e.twist_given && !verdict.holds("twist") && others_hold
+                     ? std::vector<Cause>{twist_mistake(e, verdict.allowed.motion)}
+                     : causes_in_tractions(e, verdict, *found.diagnosis, friction);
+  return found;
+}
+
+}  // namespace slipstick::convergence
