@@ -319,7 +319,7 @@ Json to_json(const FieldCheck& check) {
   set_number(json, "twist_that_fits", e.fitted.twist, kBroken);
   json.update({{"displacement", state.displacement}});
   json.update(errors_json(state, e));
-  json.update({{"certificate", certificate_json(e.certificate, kBroken)},
+  json.update({{"certificate", to_json(make_certificate(e.certificate, kBroken))},
                {"slip_direction", numbers({{"mean", e.direction.mean}, {"max", e.direction.max}}, kBroken)},
                {"yardstick", reference_json(e)},
                {"judged", judged_json(check.verdict.judged)}});
