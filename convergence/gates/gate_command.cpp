@@ -73,9 +73,10 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
   const std::vector<Gate> gates =
       with_overrides(select_gates(files.gates, request.only), request.runs.overrides);
   if (shard) {
-    result = run_shard(gate_runs(gates, pool), *shard, pool);
-    text << shard_text(result);
-    return is_complete(result) ? 0 : 1;
+    const ShardResult done = run_shard(gate_runs(gates, pool), *shard, pool);
+    result = to_json(done);
+    text << shard_text(done);
+    return done.failed.count() == 0 ? 0 : 1;
   }
   if (!request.runs.merged.empty()) require_finished(gate_runs(gates, pool), pool);
   std::vector<Judgement> judged = run_gates(gates, pool);

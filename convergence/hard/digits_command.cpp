@@ -19,12 +19,14 @@ struct DigitsRequest {
 int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostream& text, Json& result) {
   require_inputs_kept(command, input_files(solver::read_scene(request.spec.scene, request.spec.overrides)));
   const ProcessPool pool = request.runs.pool();
+  DigitsResult found;
   {
     const Interrupts interrupts;
-    result = rounding_digits(request.spec, request.options, pool);
+    found = rounding_digits(request.spec, request.options, pool);
   }
-  text << digits_text(result);
-  return result["status"] == "converged" && result["not_converged"] == 0 ? 0 : 1;
+  result = to_json(found);
+  text << digits_text(found);
+  return found.status == RunStatus::converged && found.not_converged == 0 ? 0 : 1;
 }
 
 }  // namespace

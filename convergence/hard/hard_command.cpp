@@ -1,6 +1,7 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/output_options.hpp"
@@ -52,17 +53,19 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
     runs.overrides.push_back(methods.back().override);  // named on the command line, it may run
   }
   const ProcessPool pool = runs.pool();
+  HardResult found;
   {
     const Interrupts interrupts;
-    result = run_hard_cases(cases,
-                            {.variants = !request.once,
-                             .finer_meshes = !request.once,
-                             .methods = methods,
-                             .fields = request.fields},
-                            pool);
+    found = run_hard_cases(cases,
+                           {.variants = !request.once,
+                            .finer_meshes = !request.once,
+                            .methods = methods,
+                            .fields = request.fields},
+                           pool);
   }
-  text << hard_text(result);
-  return result["counts"]["wrong"] == 0 && result["counts"]["not_converged"] == 0 ? 0 : 1;
+  result = to_json(found);
+  text << hard_text(found);
+  return found.count(HardVerdict::wrong) + found.count(HardVerdict::not_converged) == 0 ? 0 : 1;
 }
 
 }  // namespace

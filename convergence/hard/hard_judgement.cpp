@@ -1,4 +1,4 @@
-#include "convergence/hard/hard_run.hpp"
+#include "convergence/hard/hard_judgement.hpp"
 
 #include <fmt/core.h>
 
@@ -7,79 +7,120 @@
 #include <cmath>
 #include <limits>
 
-#include "convergence/results/quantity.hpp"
-
 namespace slipstick::convergence {
 namespace {
 
-/// A converged answer balances its loads to this, relative: rounding of sums over 1e6 cells, and room.
-constexpr double kBalanced = 1e-8;
-/// A stated uncertainty counts as at least this, relative: rounding and the stopping test leave as much.
-constexpr double kMinUncertainty = 1e-6;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Answers that differ by less are one answer: what the literature calls good agreement.
+/// A converged answer balances its loads within this, relative: ten times the rounding of sums over 1e6
+/// cells.
+constexpr double kBalanced = 1e-8;
+/// A stated uncertainty counts as at least this, relative, for rounding and the stopping test.
+constexpr double kMinUncertainty = 1e-6;
+/// Answers that differ by less agree.
 constexpr double kAgree = 0.01;
-/// Slip opposes traction where its mean angle from there, weighted by slip, is less: degrees.
+/// Slip opposes traction where the mean angle between them, weighted by slip, is less: degrees.
 constexpr double kOpposed = 1.0;
-/// Below this part of the energy the slip that is turned is that of rounding and of the stopping test.
+/// Below this gap over energy, turned slip is that of rounding and of the stopping test.
 constexpr double kNoticed = 1e-6;
 
-std::string text(const Json& json, const char* key) {
-  return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
-}
+// ---------------------------------------------------------------- one record
 
-/// The certificate's members against what the tolerance promises; empty: all are kept.
-std::string broken_promise(const Json& result) {
-  const double gap = number_at(result, "certificate.gap");
-  const double rounding = number_at(result, "certificate.rounding");
-  const double tolerance = number_at(result, "tolerance");
-  const double allowed = std::max(tolerance, std::isnan(rounding) ? 0.0 : rounding);
-  if (text(result, "method") != "paper" && !(gap <= allowed)) {
-    return fmt::format("its gap is {:.3g}, above {:.3g}", gap, allowed);
+/// The first member of the certificate that is above its bound; empty: none.
+std::string broken_promise(const SolveRecord& record) {
+  const CertificateRecord& certificate = record.end.certificate;
+  const double rounding = certificate.rounding;
+  const double allowed = std::max(record.problem.tolerance, std::isnan(rounding) ? 0.0 : rounding);
+  if (record.problem.method != "paper" && !(certificate.gap <= allowed)) {
+    return fmt::format("its gap is {:.3g}, above {:.3g}", certificate.gap.value, allowed);
   }
-  for (const char* member : {"moment", "force", "friction_bound"}) {
-    const double missed = number_at(result, std::string("certificate.") + member);
-    if (!(missed <= kBalanced)) return fmt::format("certificate.{} is {:.3g}", member, missed);
+  for (const auto& [name, missed] : {std::pair<const char*, double>{"moment", certificate.moment},
+                                     {"force", certificate.force},
+                                     {"friction_bound", certificate.friction_bound}}) {
+    if (!(missed <= kBalanced)) return fmt::format("certificate.{} is {:.3g}", name, missed);
   }
   return "";
 }
 
-/// The largest error that the exact side knows of the contact's motion and load.
-double exact_error(const Json& result) {
-  double largest = std::numeric_limits<double>::quiet_NaN();
-  for (const char* path : {"twist_error", "moment_error", "displacement_error"}) {
-    const double error = std::abs(number_at(result, path));
-    if (std::isnan(largest) || error > largest) largest = error;
+/// The largest known error of the contact's motion and load.
+double exact_error(const ErrorsRecord& errors) {
+  double largest = kNaN;
+  for (const double error : {errors.twist.value, errors.moment.value, errors.displacement.value}) {
+    largest = std::fmax(largest, std::abs(error));
   }
   return largest;
 }
 
-/// Infinite where a result says why its mesh resolves nothing; NaN where it says neither.
-double stated_uncertainty(const Json& result) {
-  const double said = number_at(result, "resolved.uncertainty");
-  if (!std::isnan(said)) return std::max(said, kMinUncertainty);
-  const bool explained =
-      result.contains("resolved") && !text(result["resolved"], "uncertainty_reason").empty();
-  return explained ? std::numeric_limits<double>::infinity() : said;
+/// Infinite where the record has a reason why it is not known; NaN where it states neither.
+double stated_uncertainty(const Number& uncertainty) {
+  if (!std::isnan(uncertainty)) return std::max(uncertainty.value, kMinUncertainty);
+  return uncertainty.why_missing.empty() ? kNaN : std::numeric_limits<double>::infinity();
 }
 
-/// The number of a variant over that of the first view.
-double factor(const char* path, Variant variant) {
-  constexpr double millimetres = 1e3;
-  const std::string name = path;
-  if (variant == Variant::mirrored || variant == Variant::exchanged) {
-    return name == "twist_angle" || name == "moment" ? -1.0 : 1.0;
-  }
-  if (variant != Variant::in_other_units) return 1.0;
-  return name == "twist_angle" || name == "normal_load" ? 1.0 : millimetres;
+JudgedNumbers work_of(const SolveRecord& record) {
+  const auto known = [](double value) { return number_or(value, "the result has none"); };
+  const WorkRecord& work = record.end.work;
+  JudgedNumbers numbers;
+  numbers.operator_applications = known(work.operator_applications);
+  numbers.pressure_applications = known(record.is_exact() ? kNaN : work.pressure_applications);
+  numbers.seconds = known(work.seconds.total);
+  numbers.slip_direction = known(record.method.slip_direction.mean);
+  if (!record.is_exact()) numbers.safeguards = record.method.safeguards;
+  return numbers;
 }
 
-/// How far the normal contact of one answer is from that of another, relative.
-double pressure_difference(const Json& result, const Json& other) {
+// ---------------------------------------------------------------- two records
+
+double or_zero(double size) { return std::isfinite(size) ? size : 0.0; }
+
+/// The elastic energy, of an unloaded state that of its certificate.
+double energy_of(const EndRecord& end) {
+  return or_zero(std::fmax(end.energy.elastic, end.certificate.energy.value_or(Number())));
+}
+
+/// A number of two equivalent problems, and how the variants change it.
+struct ComparedNumber {
+  double (*value)(const EndRecord&);
+  bool is_reversed;  ///< in a mirror, and with the bodies exchanged
+  bool has_length;   ///< its unit has one power of a length
+  /// The size to compare it with where it is zero, or would be without rounding.
+  double (*natural_size)(const EndRecord&);
+};
+
+double no_size(const EndRecord&) { return 0.0; }
+
+constexpr std::array kComparedNumbers{
+    ComparedNumber{[](const EndRecord& end) { return end.loads.twist_angle.value; }, true, false,
+                   [](const EndRecord& end) {
+                     return or_zero(energy_of(end) / end.loads.moment_limit) +
+                            or_zero(end.loads.displacement.length() / end.contact.contact_radius);
+                   }},
+    ComparedNumber{[](const EndRecord& end) { return end.loads.moment.value; }, true, true,
+                   [](const EndRecord& end) {
+                     const double radius = end.contact.contact_radius;
+                     return or_zero(end.loads.force.length() * radius) +
+                            or_zero(energy_of(end) * radius / end.contact.approach);
+                   }},
+    ComparedNumber{[](const EndRecord& end) { return end.loads.moment_limit.value; }, false, true, no_size},
+    ComparedNumber{[](const EndRecord& end) { return end.contact.normal_load.value; }, false, false, no_size},
+    ComparedNumber{[](const EndRecord& end) { return end.contact.contact_radius.value; }, false, true,
+                   no_size},
+    ComparedNumber{[](const EndRecord& end) { return end.energy.elastic.value; }, false, true, energy_of}};
+
+/// The number of a variant over that of the scene itself.
+double factor(const ComparedNumber& number, Variant variant) {
+  constexpr double kMillimetres = 1e3;
+  if (variant == Variant::mirrored || variant == Variant::exchanged) return number.is_reversed ? -1.0 : 1.0;
+  return variant == Variant::in_other_units && number.has_length ? kMillimetres : 1.0;
+}
+
+/// Distance of two normal contacts.
+double pressure_difference(const ContactRecord& contact, const ContactRecord& other) {
   double largest = 0.0;
-  for (const char* path : {"normal_load", "contact_radius", "approach", "peak_pressure"}) {
-    const double difference = std::abs(number_at(other, path) / number_at(result, path) - 1.0);
-    if (!std::isnan(number_at(result, path)) && !(difference <= largest)) largest = difference;
+  for (const auto number : {&ContactRecord::normal_load, &ContactRecord::contact_radius,
+                            &ContactRecord::approach, &ContactRecord::peak_pressure}) {
+    const double difference = std::abs(other.*number / contact.*number - 1.0);
+    if (!std::isnan(contact.*number) && !(difference <= largest)) largest = difference;
   }
   return largest;
 }
@@ -91,26 +132,21 @@ std::string to_string(HardVerdict verdict) {
   return words[static_cast<std::size_t>(verdict)];
 }
 
-JudgedCase judge_alone(const Json& result) {
-  const std::string status = text(result, "status");
-  const std::string message = text(result, "message");
-  if (status == "refused" && !message.empty()) return {HardVerdict::refused, message, Json::object()};
-  if (status == "refused") return {HardVerdict::wrong, "refused without a reason", Json::object()};
-  if (status == "failed") return {HardVerdict::wrong, "it died: " + message, Json::object()};
-  Json numbers;
-  for (const char* key :
-       {"operator_applications", "pressure_applications", "seconds.total", "slip_direction.mean"}) {
-    set_number(numbers, key, number_at(result, key), "the result has none");
+JudgedCase judge_alone(const SolveRecord& record) {
+  if (record.status == RunStatus::refused) {
+    return record.message.empty() ? JudgedCase{HardVerdict::wrong, "refused without a reason", {}}
+                                  : JudgedCase{HardVerdict::refused, record.message, {}};
   }
-  if (result.contains("safeguards")) numbers["safeguards"] = result["safeguards"];
-  if (status != "converged") return {HardVerdict::not_converged, message, numbers};
+  if (record.is_failed()) return {HardVerdict::wrong, "it died: " + record.message, {}};
+  JudgedNumbers numbers = work_of(record);
+  if (!record.is_converged()) return {HardVerdict::not_converged, record.message, numbers};
 
-  const double error = exact_error(result);
-  const double uncertainty = stated_uncertainty(result);
-  set_number(numbers, "error", error, "no exact answer is known");
-  set_number(numbers, "uncertainty", uncertainty, "no size: the stick area lies within a cell");
-  set_number(numbers, "certificate.gap", number_at(result, "certificate.gap"), "the result has none");
-  if (const std::string broken = broken_promise(result); !broken.empty()) {
+  const double error = exact_error(record.end.errors);
+  const double uncertainty = stated_uncertainty(record.end.resolution.uncertainty);
+  numbers.error = number_or(error, "no exact answer is known");
+  numbers.uncertainty = number_or(uncertainty, "no size: the stick area lies within a cell");
+  numbers.gap = number_or(record.end.certificate.gap, "the result has none");
+  if (const std::string broken = broken_promise(record); !broken.empty()) {
     return {HardVerdict::wrong, broken, numbers};
   }
   if (std::isnan(uncertainty)) return {HardVerdict::wrong, "it states no uncertainty", numbers};
@@ -121,31 +157,15 @@ JudgedCase judge_alone(const Json& result) {
   return {HardVerdict::certified, "", numbers};
 }
 
-/// The size to compare a number with where it is zero, or would be without rounding.
-double natural_size(const Json& result, const std::string& path) {
-  const double limit = number_at(result, "moment_limit");
-  const double radius = number_at(result, "contact_radius");
-  const double force = std::hypot(number_at(result, "force[0]"), number_at(result, "force[1]"));
-  const double shift = std::hypot(number_at(result, "displacement[0]"), number_at(result, "displacement[1]"));
-  const auto or_nothing = [](double size) { return std::isfinite(size) ? size : 0.0; };
-  // A state that has come back to nothing is measured by the energy of its certificate.
-  const double energy =
-      std::fmax(number_at(result, "elastic_energy"), number_at(result, "certificate.energy"));
-  if (path == "elastic_energy") return or_nothing(energy);
-  if (path == "moment")
-    return or_nothing(force * radius) + or_nothing(energy * radius / number_at(result, "approach"));
-  if (path != "twist_angle") return 0.0;
-  return or_nothing(energy / limit) + or_nothing(shift / radius);
-}
-
-double main_value(const Json& result) {
-  const std::string path = result["resolved"].value("number", "");
-  const double value = number_at(result, path);
-  const double size = std::isnan(value)
-                          ? std::hypot(number_at(result, path + "[0]"), number_at(result, path + "[1]"))
-                          : value;
-  const bool nothing_acts = number_at(result, "resolved.absolute") == 0.0;
-  return size == 0.0 || nothing_acts ? std::numeric_limits<double>::quiet_NaN() : size;
+double main_value(const SolveRecord& record) {
+  const LoadsRecord& loads = record.end.loads;
+  const std::string& number = record.end.resolution.number;
+  const double value = number == "twist_angle"    ? loads.twist_angle.value
+                       : number == "moment"       ? loads.moment.value
+                       : number == "displacement" ? loads.displacement.length()
+                       : number == "force"        ? loads.force.length()
+                                                  : kNaN;
+  return value == 0.0 || record.end.resolution.absolute == 0.0 ? kNaN : value;
 }
 
 MeshReference judge_by_finer(double value, double absolute, double twice, double four_times) {
@@ -157,21 +177,20 @@ MeshReference judge_by_finer(double value, double absolute, double twice, double
           error <= absolute + change || (claims_nothing && std::isfinite(error))};
 }
 
-double same_answer(const Json& result) {
+double same_answer(const SolveRecord& record) {
   constexpr double kSame = 1e-6;
-  const double missing = number_at(result, "limit.factor") - 1.0;
-  return missing > 0.0 ? kSame + number_at(result, "tolerance") / missing : kSame;
+  const double missing = record.end.loads.limit.factor - 1.0;
+  return missing > 0.0 ? kSame + record.problem.tolerance / missing : kSame;
 }
 
-double variant_difference(const Json& result, const Json& seen, Variant variant) {
+double variant_difference(const SolveRecord& record, const SolveRecord& seen, Variant variant) {
   double largest = 0.0;
-  for (const char* path :
-       {"twist_angle", "moment", "moment_limit", "normal_load", "contact_radius", "elastic_energy"}) {
-    const double first = number_at(result, path);
-    const double second = number_at(seen, path);
+  for (const ComparedNumber& number : kComparedNumbers) {
+    const double first = number.value(record.end);
+    const double second = number.value(seen.end);
     if (std::isnan(first) && std::isnan(second)) continue;
-    const double expected = factor(path, variant) * first;
-    const double scale = std::max({std::abs(expected), std::abs(second), natural_size(seen, path)});
+    const double expected = factor(number, variant) * first;
+    const double scale = std::max({std::abs(expected), std::abs(second), number.natural_size(seen.end)});
     const double difference = scale > 0.0 ? std::abs(second - expected) / scale : 0.0;
     if (!(difference <= largest)) largest = difference;
     if (std::isnan(largest)) return largest;
@@ -184,37 +203,38 @@ std::string to_string(MethodVerdict verdict) {
   return words[static_cast<std::size_t>(verdict)];
 }
 
-ComparedAnswer compare_answer(const Json& certified, const Json& other) {
-  JudgedCase alone = judge_alone(other);
+ComparedAnswer compare_answer(const SolveRecord& certified, const SolveRecord& other) {
+  const JudgedCase alone = judge_alone(other);
   if (alone.verdict == HardVerdict::refused) return {MethodVerdict::refused, alone.reason, {}};
   if (alone.verdict == HardVerdict::not_converged) {
     return {MethodVerdict::not_converged, alone.reason, alone.numbers};
   }
-  const bool foreign = other.contains("program");
-  if (alone.verdict == HardVerdict::wrong && !foreign) {
+  const bool foreign = other.program.has_value();
+  if (alone.verdict == HardVerdict::wrong && !(foreign && alone.numbers)) {
     return {MethodVerdict::other_answer, alone.reason, alone.numbers};
   }
-  if (certified.value("status", "") != "converged") {
+  if (!certified.is_converged()) {
     return {MethodVerdict::other_answer, "there is no certified answer", alone.numbers};
   }
-  const bool pressure = foreign && other["program"]["fields"] == "pressure";
-  const double difference =
-      pressure ? pressure_difference(certified, other) : variant_difference(certified, other, Variant::none);
-  set_number(alone.numbers, "difference", difference, "a number is missing");
+  JudgedNumbers numbers = *alone.numbers;
+  const bool pressure = foreign && other.program->fields == "pressure";
+  const double difference = pressure ? pressure_difference(certified.end.contact, other.end.contact)
+                                     : variant_difference(certified, other, Variant::none);
+  numbers.difference = number_or(difference, "a number is missing");
   // Another discretisation has another error, and promises no gap on this one.
-  const double by_mesh = foreign ? std::fmax(number_at(certified, "resolved.uncertainty"), 0.0) : 0.0;
+  const double by_mesh = foreign ? std::fmax(certified.end.resolution.uncertainty, 0.0) : 0.0;
   if (!(difference <= kAgree + same_answer(certified) + by_mesh)) {
     return {MethodVerdict::other_answer,
-            fmt::format("it differs by {:.2g} from the certified answer", difference), alone.numbers};
+            fmt::format("it differs by {:.2g} from the certified answer", difference), numbers};
   }
-  const double direction = number_at(alone.numbers, "slip_direction.mean");
-  if (foreign && std::isnan(direction)) return {MethodVerdict::agrees, "", alone.numbers};  // nothing slips
-  if (!(direction <= kOpposed) && !(number_at(alone.numbers, "certificate.gap") <= kNoticed)) {
+  const double direction = numbers.slip_direction;
+  if (foreign && std::isnan(direction)) return {MethodVerdict::agrees, "", numbers};  // nothing slips
+  if (!(direction <= kOpposed) && !(numbers.gap.value_or(Number()) <= kNoticed)) {
     return {MethodVerdict::other_direction,
             fmt::format("its slip is turned by {:.2g} degrees from the reverse of traction", direction),
-            alone.numbers};
+            numbers};
   }
-  return {MethodVerdict::agrees, "", alone.numbers};
+  return {MethodVerdict::agrees, "", numbers};
 }
 
 }  // namespace slipstick::convergence

@@ -2,207 +2,290 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
+#include <nlohmann/json.hpp>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/run_batch.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene_keys.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-/// A case with its result and what was solved beside it.
-struct Trial {
-  const HardCase* hard = nullptr;
-  std::optional<solver::Scene> scene;  ///< missing where it cannot be read
-  Json result;
-  JudgedCase judged;
-  Json variants = Json::object();
-  Json methods = Json::object();
-  std::filesystem::path fields = {};
-};
+using enum HardVerdict;
 
-Json verdict_json(const std::string& verdict, const std::string& reason, const Json& numbers) {
-  Json json{{"verdict", verdict}};
-  if (!reason.empty()) json["reason"] = reason;
-  if (!numbers.empty()) json.update(numbers);
+/// The grid of a record as overrides, with `finer` times as many cells along each axis.
+std::vector<std::string> grid_of(const SolveRecord& record, int finer = 1) {
+  const auto& [n1, n2] = record.problem.cells;
+  const auto& [h1, h2] = record.problem.cell_size;
+  return {fmt::format("grid.extent=[{:.17g},{:.17g}]", h1 * static_cast<double>(n1),
+                      h2 * static_cast<double>(n2)),
+          fmt::format("grid.cells=[{},{}]", finer * n1, finer * n2)};
+}
+
+/// Whether a row has a scene from which other ones can be made.
+bool is_certified(const HardRow& row) { return row.judged.verdict == certified && row.scene; }
+
+/// The worse of two verdicts stands, with its reason.
+void judge_too(JudgedCase& judged, HardVerdict verdict, std::string reason) {
+  if (judged.verdict >= verdict) return;
+  judged.verdict = verdict;
+  judged.reason = std::move(reason);
+}
+
+// ---------------------------------------------------------------- the scenes themselves
+
+std::vector<HardRow> solve_cases(const std::vector<HardCase>& cases, const std::filesystem::path& fields,
+                                 const ProcessPool& pool) {
+  std::vector<HardRow> rows(cases.size());
+  std::vector<RunSpec> runs;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    rows[i].hard = cases[i];
+    if (!fields.empty()) rows[i].fields = fields / fmt::format("{:05}.csv", i);
+    RunSpec& run = runs.emplace_back(cases[i].run);
+    run.fields = rows[i].fields;
+    run.step_before = !fields.empty();
+  }
+  std::vector<SolveRecord> records = pool.run_or_refuse(runs);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    HardRow& row = rows[i];
+    row.record = std::move(records[i]);
+    row.judged = judge_alone(row.record);
+    if (row.judged.verdict == certified)
+      row.scene = solver::read_scene(row.hard.run.scene, row.hard.run.overrides);
+  }
+  return rows;
+}
+
+// ---------------------------------------------------------------- equivalent scenes
+
+RunSpec transformed_run(const HardRow& row, Variant variant) {
+  RunSpec run = row.hard.run;
+  run.fields.clear();
+  run.variant = variant;
+  return has_given_grid(*row.scene) ? run : changed(std::move(run), grid_of(row.record));
+}
+
+void judge_variant(HardRow& row, Variant variant, Number& difference, const SolveRecord& seen) {
+  const std::string name = to_string(variant);
+  const std::string status = to_string(seen.status);
+  difference = {.why_missing = status};
+  if (!seen.is_converged()) {
+    const HardVerdict verdict = seen.status == RunStatus::not_converged ? not_converged : wrong;
+    return judge_too(row.judged, verdict, fmt::format("{} it is {}: {}", name, status, seen.message));
+  }
+  difference = number_or(variant_difference(row.record, seen, variant), status);
+  if (!(difference <= same_answer(row.record))) {
+    judge_too(row.judged, wrong, fmt::format("{} it differs by {:.3g}", name, difference.value));
+  }
+}
+
+void judge_variants(std::vector<HardRow>& rows, const ProcessPool& pool) {
+  struct Solve {
+    HardRow* row;
+    std::size_t place;  ///< in row->variants
+    Variant variant;
+  };
+  std::vector<Solve> solves;
+  std::vector<RunSpec> runs;
+  for (HardRow& row : rows) {
+    if (!is_certified(row)) continue;
+    for (const Variant variant : kVariants) {
+      const std::string reason = why_not(*row.scene, variant);
+      if (reason.empty()) {
+        solves.push_back({&row, row.variants.size(), variant});
+        runs.push_back(transformed_run(row, variant));
+      }
+      row.variants.push_back({to_string(variant), {.why_missing = reason}});
+    }
+  }
+  const std::vector<SolveRecord> records = pool.run_or_refuse(runs);
+  for (std::size_t i = 0; i < solves.size(); ++i) {
+    HardRow& row = *solves[i].row;
+    judge_variant(row, solves[i].variant, row.variants[solves[i].place].second, records[i]);
+  }
+}
+
+// ---------------------------------------------------------------- finer meshes
+
+/// Whether the error of an answer can be known from finer meshes only.
+bool needs_finer_meshes(const HardRow& row) {
+  return is_certified(row) && std::isnan(*row.judged.numbers->error) &&
+         !std::isnan(*row.judged.numbers->uncertainty) && !has_given_grid(*row.scene) &&
+         std::isfinite(main_value(row.record));
+}
+
+/// Whether a finer mesh may refuse the load that this one carries, since the mesh decides near the limit.
+bool is_at_limit(const SolveRecord& record) {
+  constexpr double kMeshOfLimit = 1e-3;  // relative difference of the limit between meshes
+  return record.end.loads.limit.factor < 1.0 + kMeshOfLimit;
+}
+
+/// twice, four_times: records on as many times the cells.
+void judge_by_finer_records(HardRow& row, const SolveRecord& twice, const SolveRecord& four_times) {
+  const auto value_of = [](const SolveRecord& record) {
+    return record.is_converged() ? main_value(record) : std::nan("");
+  };
+  const bool any_refused = twice.status == RunStatus::refused || four_times.status == RunStatus::refused;
+  const bool is_refused = any_refused && is_at_limit(row.record);
+  const MeshReference reference = judge_by_finer(main_value(row.record), row.record.end.resolution.absolute,
+                                                 value_of(twice), value_of(four_times));
+  const char* const none =
+      is_refused ? "a finer mesh carries a little less than this load" : "a finer mesh has no answer";
+  JudgedNumbers& numbers = *row.judged.numbers;
+  numbers.finer_error = number_or(reference.error, none);
+  numbers.finer_change = number_or(reference.change, none);
+  if (reference.holds || is_refused) return;
+  judge_too(row.judged, wrong,
+            fmt::format("it is {:.3g} from the answer on a finer mesh, and says {:.3g}", reference.error,
+                        numbers.uncertainty->value));
+}
+
+/// Compares answers without an exact one with those on twice and four times the cells.
+void judge_by_finer_meshes(std::vector<HardRow>& rows, const ProcessPool& pool) {
+  std::vector<HardRow*> judged;
+  std::vector<RunSpec> runs;
+  for (HardRow& row : rows) {
+    if (!needs_finer_meshes(row)) continue;
+    judged.push_back(&row);
+    for (const int finer : {2, 4}) {
+      RunSpec& run = runs.emplace_back(changed(row.hard.run, grid_of(row.record, finer)));
+      run.overrides.push_back(fmt::format("solver.substeps={}", finer * row.scene->substeps));
+    }
+  }
+  const std::vector<SolveRecord> records = pool.run_or_refuse(runs);
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    judge_by_finer_records(*judged[i], records[2 * i], records[2 * i + 1]);
+  }
+}
+
+// ---------------------------------------------------------------- other methods
+
+/// A program that fails with a message has not converged.
+ComparedAnswer compare(const HardRow& row, const BesideMethod& method, const SolveRecord& record) {
+  if (method.is_program && record.status == RunStatus::failed) {
+    return {MethodVerdict::not_converged, record.message, {}};
+  }
+  return compare_answer(row.record, record);
+}
+
+void compare_methods(std::vector<HardRow>& rows, const std::vector<BesideMethod>& methods,
+                     const ProcessPool& pool) {
+  for (const BesideMethod& method : methods) {
+    std::vector<RunSpec> runs;
+    for (const HardRow& row : rows) runs.push_back(changed(row.hard.run, {method.override}));
+    const std::vector<SolveRecord> records = pool.run_or_refuse(runs);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i].methods.push_back({method.name, compare(rows[i], method, records[i])});
+    }
+  }
+}
+
+// ---------------------------------------------------------------- JSON and text
+
+void set_known(Json& json, const char* key, const std::optional<Number>& number) {
+  if (number) set_number(json, key, *number);
+}
+
+template <typename Judged>
+void add_verdict(Json& json, const Judged& judged) {
+  json.push_back({"verdict", to_string(judged.verdict)});
+  if (!judged.reason.empty()) json.push_back({"reason", judged.reason});
+  if (!judged.numbers) return;
+  const JudgedNumbers& numbers = *judged.numbers;
+  set_number(json, "operator_applications", numbers.operator_applications);
+  set_number(json, "pressure_applications", numbers.pressure_applications);
+  set_number(json, "seconds.total", numbers.seconds);
+  set_number(json, "slip_direction.mean", numbers.slip_direction);
+  if (numbers.safeguards) json.push_back({"safeguards", to_json(*numbers.safeguards)});
+  set_known(json, "error", numbers.error);
+  set_known(json, "uncertainty", numbers.uncertainty);
+  set_known(json, "certificate.gap", numbers.gap);
+  set_known(json, "finer_meshes.error", numbers.finer_error);
+  set_known(json, "finer_meshes.change", numbers.finer_change);
+  set_known(json, "difference", numbers.difference);
+}
+
+/// The files of fields, and what the loads in them are.
+Json written_json(const HardRow& row) {
+  const SolveRecord& record = row.record;
+  Json json{{"fields", row.fields.string()},
+            {"cells", record.problem.cells},
+            {"cell_size", record.problem.cell_size},
+            {"normal_load", record.end.contact.normal_load.value},
+            {"moment", record.end.loads.moment.value},
+            {"moment_limit", record.end.loads.moment_limit.value},
+            {"force", record.end.loads.force.values},
+            {"tolerance", record.problem.tolerance},
+            {"certificate.rounding", record.end.certificate.rounding.value}};
+  if (record.history && record.history->steps.size() > 1) {
+    json.push_back({"before", step_before_file(row.fields).string()});
+  }
   return json;
 }
 
-/// The grid of a result, written out, or one with `finer` times as many cells along each axis.
-std::vector<std::string> grid_of(const Json& result, int finer = 1) {
-  const auto cells = result["cells"].get<std::array<int, 2>>();
-  const auto size = result["cell_size"].get<std::array<double, 2>>();
-  return {fmt::format("grid.extent=[{:.17g},{:.17g}]", size[0] * cells[0], size[1] * cells[1]),
-          fmt::format("grid.cells=[{},{}]", finer * cells[0], finer * cells[1])};
+Json row_json(const HardRow& row) {
+  Json json{{"family", row.hard.family},
+            {"case", row.hard.name},
+            {"set", row.hard.run.overrides},
+            {"scene", row.hard.run.scene.string()}};
+  add_verdict(json, row.judged);
+  if (!row.fields.empty() && row.record.is_converged()) json.push_back({"written", written_json(row)});
+  Json variants = Json::object();
+  for (const auto& [name, difference] : row.variants) set_number(variants, name, difference);
+  if (!variants.empty()) json.push_back({"variants", variants});
+  Json methods = Json::object();
+  for (const auto& [name, compared] : row.methods) add_verdict(methods[name] = Json::object(), compared);
+  if (!methods.empty()) json.push_back({"methods", methods});
+  return json;
 }
 
-RunSpec seen(const Trial& trial, Variant variant) {
-  RunSpec spec = trial.hard->run;
-  spec.fields.clear();
-  spec.variant = variant;
-  if (has_given_grid(*trial.scene)) return spec;
-  return changed(std::move(spec), grid_of(trial.result));
-}
-
-/// The worse of two verdicts stands, with its reason.
-void judge_too(Trial& trial, HardVerdict verdict, std::string reason) {
-  if (trial.judged.verdict >= verdict) return;
-  trial.judged.verdict = verdict;
-  trial.judged.reason = std::move(reason);
-}
-
-void judge_variant(Trial& trial, Variant variant, const Json& result) {
-  const std::string name = to_string(variant);
-  const std::string status = result["status"];
-  const double difference =
-      status == "converged" ? variant_difference(trial.result, result, variant) : std::nan("");
-  set_number(trial.variants, name, difference, status);
-  if (status != "converged") {
-    const HardVerdict verdict = status == "not_converged" ? HardVerdict::not_converged : HardVerdict::wrong;
-    judge_too(trial, verdict, fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
-  } else if (!(difference <= same_answer(trial.result))) {
-    judge_too(trial, HardVerdict::wrong, fmt::format("{} it differs by {:.3g}", name, difference));
-  }
-}
-
-void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
-  RunBatch batch;
-  for (Trial& trial : trials) {
-    if (trial.judged.verdict != HardVerdict::certified) continue;
-    for (const Variant variant : kVariants) {
-      if (const std::string reason = why_not(*trial.scene, variant); !reason.empty()) {
-        set_missing(trial.variants, to_string(variant), reason);
-      } else {
-        batch.add_or_refuse(seen(trial, variant),
-                            [&trial, variant](const Json& result) { judge_variant(trial, variant, result); });
-      }
-    }
-  }
-  batch.run(pool);
-}
-
-/// Whether only finer meshes can say how far an answer is off.
-bool needs_finer_meshes(const Trial& trial) {
-  const Json& numbers = trial.judged.numbers;
-  return trial.judged.verdict == HardVerdict::certified && numbers["error"].is_null() &&
-         numbers["uncertainty"].is_number() && !has_given_grid(*trial.scene) &&
-         std::isfinite(main_value(trial.result));
-}
-
-/// Whether a finer mesh may refuse what this one carries: a load so near the limit that the mesh decides.
-bool is_at_limit(const Json& result) {
-  constexpr double kMeshOfLimit = 1e-3;  ///< the limit differs by this from mesh to mesh, relative
-  return result.contains("limit") && result["limit"]["factor"].is_number() &&
-         result["limit"]["factor"] < 1.0 + kMeshOfLimit;
-}
-
-/// Answers without an exact one are held to those on twice and four times the cells.
-void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) {
-  std::map<Trial*, std::vector<double>> found;
-  std::set<Trial*> refused;
-  RunBatch batch;
-  for (Trial& trial : trials) {
-    if (!needs_finer_meshes(trial)) continue;
-    for (const int finer : {2, 4}) {
-      RunSpec spec = changed(trial.hard->run, grid_of(trial.result, finer));
-      spec.overrides.push_back(fmt::format("solver.substeps={}", finer * trial.scene->substeps));
-      batch.add_or_refuse(spec, [&trial, &refused, &found](const Json& result) {
-        if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
-        found[&trial].push_back(is_converged(result) ? main_value(result) : std::nan(""));
-      });
-    }
-  }
-  batch.run(pool);
-  for (const auto& [trial, finer] : found) {
-    Json& numbers = trial->judged.numbers;
-    const MeshReference reference =
-        judge_by_finer(main_value(trial->result), trial->result["resolved"]["absolute"], finer[0], finer[1]);
-    const char* none = refused.contains(trial) ? "a finer mesh carries a little less than this load"
-                                               : "a finer mesh has no answer";
-    set_number(numbers, "finer_meshes.error", reference.error, none);
-    set_number(numbers, "finer_meshes.change", reference.change, none);
-    if (!reference.holds && !refused.contains(trial)) {
-      judge_too(*trial, HardVerdict::wrong,
-                fmt::format("it is {:.3g} from the answer on a finer mesh, and says {:.3g}", reference.error,
-                            numbers["uncertainty"].get<double>()));
-    }
-  }
-}
-
-void compare_methods(std::vector<Trial>& trials, const std::vector<BesideMethod>& methods,
-                     const ProcessPool& pool) {
-  for (const auto& [method, override, is_program] : methods) {
-    RunBatch batch;
-    for (Trial& trial : trials) {
-      const RunSpec spec = changed(trial.hard->run, {override});
-      batch.add_or_refuse(spec, [&trial, method = method, is_program = is_program](const Json& result) {
-        const bool failed = is_program && result["status"] == "failed";  // and says so
-        const ComparedAnswer compared =
-            failed ? ComparedAnswer{MethodVerdict::not_converged, result["message"], Json::object()}
-                   : compare_answer(trial.result, result);
-        trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
-      });
-    }
-    batch.run(pool);
-  }
-}
-
-Json row(const Trial& trial) {
-  Json row{{"family", trial.hard->family},
-           {"case", trial.hard->name},
-           {"set", trial.hard->run.overrides},
-           {"scene", trial.hard->run.scene.string()}};
-  row.update(verdict_json(to_string(trial.judged.verdict), trial.judged.reason, trial.judged.numbers));
-  if (!trial.fields.empty() && trial.result.value("status", "") == "converged") {
-    Json& written = row["written"] = {{"fields", trial.fields.string()}};
-    for (const char* key :
-         {"cells", "cell_size", "normal_load", "moment", "moment_limit", "force", "tolerance"}) {
-      written[key] = trial.result[key];
-    }
-    written["certificate.rounding"] = trial.result["certificate"]["rounding"];
-    if (trial.result.contains("steps") && trial.result["steps"].size() > 1) {
-      written["before"] = step_before_file(trial.fields).string();
-    }
-  }
-  if (!trial.variants.empty()) row["variants"] = trial.variants;
-  if (!trial.methods.empty()) row["methods"] = trial.methods;
-  return row;
-}
-
-Json counts(const std::vector<Trial>& trials, const std::string& family) {
-  Json counts{{"certified", 0}, {"refused", 0}, {"not_converged", 0}, {"wrong", 0}};
-  for (const Trial& trial : trials) {
-    if (family.empty() || trial.hard->family == family) {
-      Json& count = counts[to_string(trial.judged.verdict)];
-      count = count.get<int>() + 1;
-    }
+/// Number of cases with each verdict, in the order of the enumeration. family: empty for all.
+std::array<std::size_t, 4> counts(const HardResult& result, const std::string& family) {
+  std::array<std::size_t, 4> counts{};
+  for (const HardRow& row : result.rows) {
+    if (family.empty() || row.hard.family == family) ++counts[static_cast<std::size_t>(row.judged.verdict)];
   }
   return counts;
 }
 
-Json method_counts(const std::vector<Trial>& trials, const std::string& method) {
-  Json counts{
-      {"agrees", 0}, {"refused", 0}, {"not_converged", 0}, {"other_direction", 0}, {"other_answer", 0}};
-  for (const Trial& trial : trials) {
-    Json& count = counts[trial.methods[method]["verdict"].get<std::string>()];
-    count = count.get<int>() + 1;
-  }
+/// The same of a method's verdicts.
+std::array<std::size_t, 5> method_counts(const HardResult& result, std::size_t method) {
+  std::array<std::size_t, 5> counts{};
+  for (const HardRow& row : result.rows)
+    ++counts[static_cast<std::size_t>(row.methods[method].second.verdict)];
   return counts;
 }
 
-std::string methods_text(const Json& methods) {
+template <typename Verdict, std::size_t N>
+Json counts_json(const std::array<std::size_t, N>& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < N; ++i) json[to_string(static_cast<Verdict>(i))] = counts[i];
+  return json;
+}
+
+/// Names of the families in the order of the cases, with the reason why each is hard.
+std::vector<std::pair<std::string, std::string>> families_of(const HardResult& result) {
+  std::vector<std::pair<std::string, std::string>> families;
+  for (const HardRow& row : result.rows) {
+    const std::pair family{row.hard.family, row.hard.why};
+    if (std::ranges::find(families, family.first, &decltype(family)::first) == families.end()) {
+      families.push_back(family);
+    }
+  }
+  return families;
+}
+
+std::string methods_text(const HardResult& result) {
   std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
                                  "refused", "not converged", "other direction", "other answer");
-  for (const auto& [name, counts] : methods.items()) {
-    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", name, counts["agrees"].get<int>(),
-                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
-                        counts["other_direction"].get<int>(), counts["other_answer"].get<int>());
+  for (std::size_t i = 0; i < result.methods.size(); ++i) {
+    const auto [agree, refuse, open, direction, answer] = method_counts(result, i);
+    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", result.methods[i], agree, refuse, open,
+                        direction, answer);
   }
   return text;
 }
@@ -221,61 +304,56 @@ BesideMethod read_beside_method(const std::string& word) {
                                                            fmt::join(allowed, ", ")));
 }
 
-Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
-  std::vector<Trial> trials(cases.size());
-  RunBatch first;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    Trial& trial = trials[i];
-    trial.hard = &cases[i];
-    RunSpec spec = cases[i].run;
-    if (!options.fields.empty()) trial.fields = options.fields / fmt::format("{:05}.csv", i);
-    spec.fields = trial.fields;
-    spec.step_before = !spec.fields.empty();
-    first.add_or_refuse(spec, [&trial](const Json& result) {
-      trial.result = result;
-      trial.judged = judge_alone(result);
-      if (trial.judged.verdict != HardVerdict::certified) return;
-      trial.scene = solver::read_scene(trial.hard->run.scene, trial.hard->run.overrides);
-    });
-  }
-  first.run(pool);
-  if (options.variants) judge_variants(trials, pool);
-  if (options.finer_meshes) judge_by_finer_meshes(trials, pool);
-  compare_methods(trials, options.methods, pool);
+std::size_t HardResult::count(HardVerdict verdict) const {
+  return counts(*this, "")[static_cast<std::size_t>(verdict)];
+}
 
-  Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};
-  for (const BesideMethod& method : options.methods) {
-    json["methods"][method.name] = method_counts(trials, method.name);
+HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,
+                          const ProcessPool& pool) {
+  HardResult result{.rows = solve_cases(cases, options.fields, pool), .methods = {}};
+  if (options.variants) judge_variants(result.rows, pool);
+  if (options.finer_meshes) judge_by_finer_meshes(result.rows, pool);
+  compare_methods(result.rows, options.methods, pool);
+  for (const BesideMethod& method : options.methods) result.methods.push_back(method.name);
+  return result;
+}
+
+Json to_json(const HardResult& result) {
+  Json families = Json::object();
+  for (const auto& [name, why] : families_of(result)) {
+    families[name] = {{"why", why}, {"counts", counts_json<HardVerdict>(counts(result, name))}};
   }
-  for (const Trial& trial : trials) {
-    const std::string& family = trial.hard->family;
-    if (!json["families"].contains(family)) {
-      json["families"][family] = {{"why", trial.hard->why}, {"counts", counts(trials, family)}};
-    }
-    json["rows"].push_back(row(trial));
+  Json rows = Json::array();
+  for (const HardRow& row : result.rows) rows.push_back(row_json(row));
+  Json json{{"counts", counts_json<HardVerdict>(counts(result, ""))},
+            {"families", std::move(families)},
+            {"rows", std::move(rows)}};
+  Json methods = Json::object();
+  for (std::size_t i = 0; i < result.methods.size(); ++i) {
+    methods[result.methods[i]] = counts_json<MethodVerdict>(method_counts(result, i));
   }
-  json["provenance"] = provenance(1);
+  if (!methods.empty()) json.push_back({"methods", std::move(methods)});
+  json.push_back({"provenance", provenance(1)});
   return json;
 }
 
-std::string hard_text(const Json& result) {
+std::string hard_text(const HardResult& result) {
   std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",
                                  "not converged", "wrong");
-  const auto line = [&](const std::string& name, const Json& counts) {
-    text += fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", name, counts["certified"].get<int>(),
-                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
-                        counts["wrong"].get<int>());
+  const auto line = [&](const std::string& name, const std::string& family) {
+    const auto [certain, refuse, open, false_answers] = counts(result, family);
+    text += fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", name, certain, refuse, open, false_answers);
   };
-  for (const auto& [name, family] : result["families"].items()) line(name, family["counts"]);
-  line("all", result["counts"]);
-  if (result.contains("methods")) text += methods_text(result["methods"]);
-  for (const Json& row : result["rows"]) {
-    if (row["verdict"] != "wrong" && row["verdict"] != "not_converged") continue;
-    text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", row["verdict"].get<std::string>(),
-                        row["family"].get<std::string>(), row["case"].get<std::string>(),
-                        row.value("reason", ""), row["scene"].get<std::string>());
-    for (const Json& assignment : row["set"])
-      text += fmt::format(" --set '{}'", assignment.get<std::string>());
+  for (const auto& [name, why] : families_of(result)) line(name, name);
+  line("all", "");
+  if (!result.methods.empty()) text += methods_text(result);
+  for (const HardRow& row : result.rows) {
+    const JudgedCase& judged = row.judged;
+    if (judged.verdict != wrong && judged.verdict != not_converged) continue;
+    text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", to_string(judged.verdict),
+                        row.hard.family, row.hard.name, judged.reason, row.hard.run.scene.string());
+    for (const std::string& assignment : row.hard.run.overrides)
+      text += fmt::format(" --set '{}'", assignment);
     text += "\n";
   }
   return text;

@@ -194,7 +194,7 @@ std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Me
   for (const Index cells : meshes.answer) runs.push_back(changed(base, {cells_override(scene, cells)}));
   if (runs.empty()) runs.push_back(base);
   runs.back().fields = fields;
-  std::vector<Json> results = pool.run(runs);
+  std::vector<Json> results = to_json(pool.run(runs));
   if (is_failed(results.back())) throw std::runtime_error(results.back()["message"].get<std::string>());
   std::erase_if(results, [](const Json& result) { return is_failed(result); });
   return results;

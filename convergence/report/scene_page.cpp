@@ -233,13 +233,13 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
     options.methods = request.beside;
     if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
-    page["hard"] =
-        run_hard_cases(hard_cases(own ? base : changed(base, {kNoProgram}), scene, meshes), options, pool);
+    page["hard"] = to_json(
+        run_hard_cases(hard_cases(own ? base : changed(base, {kNoProgram}), scene, meshes), options, pool));
     findings.push_back(own ? judge_hard(page["hard"], "Hard variants") : judge_hard_beside(page["hard"]));
   }
   if (own) {
-    page["digits"] =
-        rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool);
+    page["digits"] = to_json(
+        rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool));
   }
   if (request.validation) {
     page["paper"] = validate(*request.validation, folder, pool);

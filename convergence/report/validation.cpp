@@ -214,11 +214,12 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
   }
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return run_hard_cases(shown,
-                        {.variants = false,
-                         .finer_meshes = false,
-                         .methods = {read_beside_method("projected_gradient"), read_beside_method("paper")}},
-                        pool);
+  return to_json(
+      run_hard_cases(shown,
+                     {.variants = false,
+                      .finer_meshes = false,
+                      .methods = {read_beside_method("projected_gradient"), read_beside_method("paper")}},
+                     pool));
 }
 
 /// A field of check/fields/, at 0.9 of the limit moment.

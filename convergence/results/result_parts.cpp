@@ -19,6 +19,10 @@ void set_number(Json& object, const std::string& key, double value, const std::s
   }
 }
 
+void set_number(Json& object, const std::string& key, const Number& number) {
+  set_number(object, key, number, number.why_missing);
+}
+
 namespace {
 
 double number_of(const Json& json) { return json.is_number() ? json.get<double>() : NAN; }

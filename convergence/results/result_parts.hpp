@@ -1,16 +1,18 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+
+#include "convergence/results/solve_record.hpp"
 
 /// Numbers in JSON and in text for people.
 namespace slipstick::convergence {
 
-using Json = nlohmann::ordered_json;
-
 /// Sets a key to null, with the reason beside it.
 void set_missing(Json& object, const std::string& key, const std::string& reason);
+
+/// The same of a number with its own reason.
+void set_number(Json& object, const std::string& key, const Number& number);
 
 /// JSON has no NaN and no infinity: such a number is missing.
 void set_number(Json& object, const std::string& key, double value, const std::string& reason);

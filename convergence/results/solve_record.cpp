@@ -547,11 +547,17 @@ double SolveRecord::seconds() const {
 }
 
 Json to_json(const SolveRecord& record) { return json_of(record); }
+std::vector<Json> to_json(const std::vector<SolveRecord>& records) {
+  std::vector<Json> all;
+  for (const SolveRecord& record : records) all.push_back(json_of(record));
+  return all;
+}
 SolveRecord from_json(const Json& json) { return record_of<SolveRecord>(json); }
 Json to_json(const StepRecord& step) { return json_of(step); }
 StepRecord step_from_json(const Json& json) { return record_of<StepRecord>(json); }
 Json to_json(const CertificateRecord& certificate) { return json_of(certificate); }
 Json to_json(const ResolutionRecord& resolution) { return json_of(resolution); }
+Json to_json(const solver::Safeguards& safeguards) { return json_of(safeguards); }
 Json to_json(const FieldErrorRecord& error) { return json_of(error); }
 Json to_json(const TractionErrorRecord& error) { return json_of(error); }
 void to_json(Json& json, const Provenance& provenance) { json = json_of(provenance); }

@@ -359,12 +359,16 @@ Json to_json(const SolveRecord& record);
 /// Throws InputError for JSON that is no result of a solve.
 SolveRecord from_json(const Json& json);
 
+/// Each of them.
+std::vector<Json> to_json(const std::vector<SolveRecord>& records);
+
 /// Parts of it, for rows of tables and checkpoints.
 Json to_json(const StepRecord& step);
 StepRecord step_from_json(const Json& json);
 Json to_json(const CertificateRecord& certificate);
 Json to_json(const ResolutionRecord& resolution);
 Json to_json(const FieldErrorRecord& error);
+Json to_json(const solver::Safeguards& safeguards);
 Json to_json(const TractionErrorRecord& error);
 void to_json(Json& json, const Provenance& provenance);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iostream>
 #include <list>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <thread>
 #include <utility>
@@ -29,17 +31,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Part of the memory now available that runs may take side by side: other programs live here too.
+/// Part of the free memory that runs may take side by side; the rest is left to other programs.
 constexpr double kMemoryPart = 0.7;
-/// An interrupt that comes just before the waiting begins is seen after it.
-constexpr int kLongestWait = 1000;  // ms
+/// ms; an interrupt that comes just before poll() begins to wait is noticed after it.
+constexpr int kLongestWait = 1000;
 
-/// A run that is not on disk yet.
+/// A run without a result on disk.
 struct Task {
   const PreparedRun* run;
   std::string label;  ///< for a person
   double bytes = 0.0;
-  std::string refusal = {};  ///< why it is not even started; empty: it is
+  std::string refusal = {};  ///< why it is not started; empty: it is
 };
 
 Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
@@ -50,15 +52,22 @@ Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
     const solver::Model model = solver::make_model(scene);
     task.label += fmt::format(" {} x {}", model.grid.n1, model.grid.n2);
     task.bytes = predicted_memory(scene, model).total();
-  } catch (const solver::OutOfMemory& error) {  // kept nowhere: with more memory it has an answer
+  } catch (const solver::OutOfMemory& error) {  // not kept on disk: more memory would give an answer
     task.refusal = error.what();
-  } catch (const solver::InputError&) {  // the run itself will say so
+  } catch (const solver::InputError&) {  // the run gives the same message
   }
   return task;
 }
 
-std::optional<Json> find(const ResultCache& cache, const PreparedRun& run) {
-  return cache.find(run.name, run.cache_key, run.spec.fields);
+/// The kept result of a run, parsed here and nowhere else; none where it is no result of a solve.
+std::optional<SolveRecord> find(const ResultCache& cache, const PreparedRun& run) {
+  const std::optional<Json> kept = cache.find(run.name, run.cache_key, run.spec.fields);
+  if (!kept) return std::nullopt;
+  try {
+    return from_json(*kept);
+  } catch (const solver::InputError&) {
+    return std::nullopt;
+  }
 }
 
 /// The folder of finished results, and those that it joins.
@@ -70,12 +79,12 @@ class JoinedCaches {
 
   const ResultCache& own() const { return own_; }
 
-  std::optional<Json> find_or_join(const PreparedRun& run) const {
-    if (std::optional<Json> found = find(own_, run)) return found;
+  std::optional<SolveRecord> find_or_join(const PreparedRun& run) const {
+    if (std::optional<SolveRecord> found = find(own_, run)) return found;
     for (const ResultCache& other : others_) {
-      std::optional<Json> found = find(other, run);
+      std::optional<SolveRecord> found = find(other, run);
       if (!found) continue;
-      own_.keep(run.name, run.cache_key, *found, run.spec.fields);
+      own_.keep(run.name, run.cache_key, to_json(*found), run.spec.fields);
       return found;
     }
     return std::nullopt;
@@ -86,24 +95,26 @@ class JoinedCaches {
   std::vector<ResultCache> others_;
 };
 
-/// What a process that failed says, or how it ended; empty where nothing speaks against its result.
+/// The message of a process that failed, or how it ended; empty where its result counts.
 std::string failure_of(const ProgramEnd& end) {
   constexpr std::string_view kName = "slipstick: ";
-  std::string said = end.output.substr(0, end.output.find_last_not_of('\n') + 1);
-  if (said.starts_with(kName)) said.erase(0, kName.size());
-  if (end.code > 0 && !said.empty()) return said;
+  std::string message = end.output.substr(0, end.output.find_last_not_of('\n') + 1);
+  if (message.starts_with(kName)) message.erase(0, kName.size());
+  if (end.code > 0 && !message.empty()) return message;
   return end.code == 0 ? "" : "its process " + end.trouble;
 }
 
-/// A run that needs more has a worker to itself, so that it begins with all the memory that it may take and
-/// gives all of it back; what starting a process takes is little beside it.
-constexpr double kMostOfMany = 128.0 * 0x1p20;
+/// A larger run has a worker to itself: the process starts with all the memory that it may take, and returns
+/// it at its end. The start of a process costs little compared with such a run.
+constexpr double kMostShared = 128.0 * 0x1p20;  // bytes
 
-/// Whether a run needs a worker to itself. What FFTW plans while numbers are rounded at random is no other
-/// run's.
-bool is_alone(const Task& task) { return task.bytes > kMostOfMany || task.run->scene.rounding_seed != 0; }
+/// Whether a run needs a worker to itself. FFTW's plans depend on the rounding, so that no other run may use
+/// plans made under random rounding.
+bool needs_own_worker(const Task& task) {
+  return task.bytes > kMostShared || task.run->scene.rounding_seed != 0;
+}
 
-/// The work on some tasks, largest first.
+/// Works through tasks, the largest first.
 class TaskQueue {
  public:
   TaskQueue(std::vector<Task> tasks, const ResultCache& cache, const ProcessPoolOptions& options)
@@ -113,35 +124,35 @@ class TaskQueue {
         jobs_(options.jobs > 0 ? static_cast<std::size_t>(options.jobs)
                                : std::max(1U, std::thread::hardware_concurrency())) {
     std::ranges::stable_sort(tasks_, {}, [](const Task& task) {
-      // One worker takes runs that are rounded alike.
+      // All runs of a worker have one rounding.
       return std::pair(-task.bytes, static_cast<int>(task.run->spec.rounding));
     });
   }
 
-  /// The results, by their names. Each is read when its run is finished: another program may share the
-  /// folder.
-  std::map<std::string, Json> work() {
+  /// The records by the names of their runs. Each is read at the end of its run, since another program may
+  /// share the folder.
+  std::map<std::string, SolveRecord> work() {
     Progress progress(tasks_.size(),
                       std::accumulate(tasks_.begin(), tasks_.end(), 0.0,
                                       [](double sum, const Task& task) { return sum + task.bytes; }));
-    std::map<std::string, Json> results;
+    std::map<std::string, SolveRecord> records;
     while (next_ < tasks_.size() || busy_ > 0) {
       while (may_start()) start_next();
       for (const auto& [task, failure] : take_finished(progress)) {
         progress.finished(task->label, task->bytes);
-        results[task->run->name] = result_of(*task->run, failure);
+        records[task->run->name] = record_of(*task->run, failure);
       }
-      if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
+      if (is_interrupted()) stop(progress, "interrupted");
     }
-    end_waiting();
-    return results;
+    end_idle();
+    return records;
   }
 
-  /// The same in this process, where no other can be started: one after another.
-  std::map<std::string, Json> work_here() {
+  /// The same in this process, one run after another, on systems where it can start no other.
+  std::map<std::string, SolveRecord> work_here() {
     Progress progress(tasks_.size(), static_cast<double>(tasks_.size()));
     const auto shared = std::make_shared<solver::SolveCache>();
-    std::map<std::string, Json> results;
+    std::map<std::string, SolveRecord> records;
     for (const Task& task : tasks_) {
       std::string failure;
       try {
@@ -152,35 +163,36 @@ class TaskQueue {
         failure = error.what();
       }
       progress.finished(task.label, 1.0);
-      results[task.run->name] = result_of(*task.run, failure);
-      if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
+      records[task.run->name] = record_of(*task.run, failure);
+      if (is_interrupted()) stop(progress, "interrupted");
     }
-    return results;
+    return records;
   }
 
  private:
+  bool is_interrupted() const { return options_.interrupted != nullptr && options_.interrupted(); }
+
   [[noreturn]] void stop(const Progress& progress, const std::string& why) const {
     throw std::runtime_error(
         fmt::format("{}: {} points are done and kept in {}; the same command goes on from there", why,
                     progress.text(), options_.folder.string()));
   }
 
-  Json result_of(const PreparedRun& run, std::string failure) const {
-    if (std::optional<Json> found = find(cache_, run)) return *std::move(found);
+  SolveRecord record_of(const PreparedRun& run, std::string failure) const {
+    if (std::optional<SolveRecord> found = find(cache_, run)) return *std::move(found);
     if (failure.empty()) failure = "its result is not on disk";
     std::cerr << plain_text(fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure));
-    return not_computed("failed", failure, run.spec);
+    return not_computed(RunStatus::failed, failure, run.spec);
   }
 
-  /// A worker and what it does; null: it waits.
-  struct Hand {
-    Hand(const ProcessPoolOptions& options, std::optional<double> memory_limit, const Task* first)
+  struct PooledWorker {
+    PooledWorker(const ProcessPoolOptions& options, std::optional<double> memory_limit, const Task* first)
         : worker(options.program, options.folder, memory_limit),
           task(first),
           rounding(first->run->spec.rounding) {}
     Worker worker;
-    const Task* task;
-    Rounding rounding;  ///< of all its runs: FFTW remembers plans, which it chose by rounded costs
+    const Task* task;   ///< nullptr: idle
+    Rounding rounding;  ///< of all its runs: FFTW keeps plans, which it chose by rounded costs
   };
   struct Finished {
     const Task* task;
@@ -193,50 +205,50 @@ class TaskQueue {
   }
 
   void start_next() {
-    // What is left now is less by what the others take.
+    // The limit of all: the free memory now is smaller by what the running solves take.
     const auto limit = std::isfinite(memory_) ? std::optional(memory_) : std::nullopt;
     const Task* const task = &tasks_[next_++];
-    auto hand = std::ranges::find_if(hands_, [&](const Hand& other) {
-      return other.task == nullptr && other.rounding == task->run->spec.rounding && !is_alone(*task);
+    auto pooled = std::ranges::find_if(workers_, [&](const PooledWorker& other) {
+      return other.task == nullptr && other.rounding == task->run->spec.rounding && !needs_own_worker(*task);
     });
-    if (hand == hands_.end()) {
-      end_waiting();
-      hand = hands_.emplace(hands_.end(), options_, limit, task);
+    if (pooled == workers_.end()) {
+      end_idle();
+      pooled = workers_.emplace(workers_.end(), options_, limit, task);
     }
-    hand->task = task;
-    hand->worker.start(task->run->spec);
+    pooled->task = task;
+    pooled->worker.start(task->run->spec);
     bytes_ += task->bytes;
     ++busy_;
   }
 
-  void end_waiting() {
-    hands_.remove_if([](Hand& hand) {
-      if (hand.task == nullptr) hand.worker.wait();
-      return hand.task == nullptr;
+  void end_idle() {
+    workers_.remove_if([](PooledWorker& pooled) {
+      if (pooled.task == nullptr) pooled.worker.wait();
+      return pooled.task == nullptr;
     });
   }
 
-  /// Waits for runs to be finished, or for an interrupt.
+  /// Waits until a run is finished, or for an interrupt.
   std::vector<Finished> take_finished(const Progress& progress) {
     std::vector<pollfd> outputs;
-    for (const Hand& hand : hands_) outputs.push_back({hand.worker.output(), POLLIN, 0});
+    for (const PooledWorker& pooled : workers_) outputs.push_back({pooled.worker.output(), POLLIN, 0});
     std::vector<Finished> finished;
     if (poll(outputs.data(), outputs.size(), kLongestWait) <= 0) return finished;
-    auto next = hands_.begin();
+    auto next = workers_.begin();
     for (const pollfd& output : outputs) {
-      const auto hand = next++;
+      const auto pooled = next++;
       if (output.revents == 0) continue;
-      const Worker::Said said = hand->worker.next();
-      if (said == Worker::Said::more) continue;
-      const Task* const task = std::exchange(hand->task, nullptr);
+      const Worker::Event event = pooled->worker.next();
+      if (event == Worker::Event::output) continue;
+      const Task* const task = std::exchange(pooled->task, nullptr);
       std::string failure;
-      if (said == Worker::Said::ended || task == nullptr || is_alone(*task)) {
-        const ProgramEnd end = hand->worker.wait();
+      if (event == Worker::Event::ended || task == nullptr || needs_own_worker(*task)) {
+        const ProgramEnd end = pooled->worker.wait();
         failure = failure_of(end);
-        hands_.erase(hand);
+        workers_.erase(pooled);
         if (end.code == kNotKept) stop(progress, failure);
       }
-      if (task == nullptr) continue;  // it ended while it waited: nothing is lost
+      if (task == nullptr) continue;  // it ended while it was idle: nothing is lost
       bytes_ -= task->bytes;
       --busy_;
       finished.push_back({task, std::move(failure)});
@@ -249,10 +261,10 @@ class TaskQueue {
   std::vector<Task> tasks_;
   std::size_t jobs_;
   std::size_t next_ = 0;
-  std::list<Hand> hands_;
+  std::list<PooledWorker> workers_;
   std::size_t busy_ = 0;
-  double bytes_ = 0.0;  ///< of what runs
-  /// One run may take all of the first, several together the second.
+  double bytes_ = 0.0;  ///< predicted, of the running solves
+  /// Bytes that one run may take, and several runs together.
   double memory_ = solver::memory_within(options_.memory_limit);
   double shared_ = options_.memory_limit ? memory_ : kMemoryPart * memory_;
 };
@@ -275,15 +287,15 @@ std::vector<PreparedRun> ProcessPool::with_versions(const std::vector<PreparedRu
   return all;
 }
 
-std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& as_they_came) const {
-  const std::vector<PreparedRun> runs = with_versions(as_they_came);
+std::vector<SolveRecord> ProcessPool::run_prepared(const std::vector<PreparedRun>& unversioned) const {
+  const std::vector<PreparedRun> runs = with_versions(unversioned);
   const JoinedCaches caches(options_);
   std::vector<Task> tasks;
-  std::map<std::string, Json> known;
+  std::map<std::string, SolveRecord> known;
   for (const PreparedRun& run : runs) {
     const auto [place, is_new] = known.try_emplace(run.name);
     if (!is_new) continue;
-    std::optional<Json> found = caches.find_or_join(run);
+    std::optional<SolveRecord> found = caches.find_or_join(run);
     if (found) {
       place->second = *std::move(found);
       continue;
@@ -292,27 +304,51 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& as_t
     if (task.refusal.empty()) {
       tasks.push_back(std::move(task));
     } else {
-      place->second = not_computed("refused", task.refusal, run.spec);
-      place->second["out_of_memory"] = true;
+      place->second = not_computed(RunStatus::refused, task.refusal, run.spec);
+      place->second.out_of_memory = true;
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
   TaskQueue queue(std::move(tasks), caches.own(), options_);
-  for (auto& [name, result] : starts_programs() ? queue.work() : queue.work_here())
-    known[name] = std::move(result);
-  std::vector<Json> results;
-  for (const PreparedRun& run : runs) results.push_back(known[run.name]);
-  return results;
+  for (auto& [name, record] : starts_programs() ? queue.work() : queue.work_here()) {
+    known[name] = std::move(record);
+  }
+  std::vector<SolveRecord> records;
+  for (const PreparedRun& run : runs) records.push_back(known[run.name]);
+  return records;
 }
 
-std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
+std::vector<SolveRecord> ProcessPool::run(const std::vector<RunSpec>& specs) const {
   std::vector<PreparedRun> runs;
   for (const RunSpec& spec : specs) runs.push_back(prepare_run(spec));
   return run_prepared(runs);
 }
 
-std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& as_they_came) const {
-  const std::vector<PreparedRun> runs = with_versions(as_they_came);
+SolveRecord ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
+
+std::vector<SolveRecord> ProcessPool::run_or_refuse(const std::vector<RunSpec>& specs) const {
+  std::vector<PreparedRun> readable;
+  std::vector<std::string> complaints;  // empty: the scene can be read
+  for (const RunSpec& spec : specs) {
+    std::string& complaint = complaints.emplace_back();
+    try {
+      readable.push_back(prepare_run(spec));
+    } catch (const solver::InputError& error) {
+      complaint = error.what();
+    }
+  }
+  const std::vector<SolveRecord> solved = run_prepared(readable);
+  std::vector<SolveRecord> records;
+  auto next = solved.begin();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    records.push_back(complaints[i].empty() ? *next++
+                                            : not_computed(RunStatus::refused, complaints[i], specs[i]));
+  }
+  return records;
+}
+
+std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& unversioned) const {
+  const std::vector<PreparedRun> runs = with_versions(unversioned);
   const JoinedCaches caches(options_);
   std::vector<PreparedRun> missing;
   for (const PreparedRun& run : runs) {
@@ -320,7 +356,5 @@ std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& as
   }
   return missing;
 }
-
-Json ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
 
 }  // namespace slipstick::convergence

@@ -27,7 +27,7 @@ class RunBatch {
     try {
       add(spec, take);
     } catch (const solver::InputError& error) {
-      take(not_computed("refused", error.what(), spec));
+      take(to_json(not_computed(RunStatus::refused, error.what(), spec)));
     }
   }
 
@@ -35,8 +35,8 @@ class RunBatch {
 
   /// Solves all, then hands out the results in the order of add(). Throws as ProcessPool::run().
   void run(const ProcessPool& pool) const {
-    const std::vector<Json> results = pool.run_prepared(runs_);
-    for (std::size_t i = 0; i < results.size(); ++i) takes_[i](results[i]);
+    const std::vector<SolveRecord> records = pool.run_prepared(runs_);
+    for (std::size_t i = 0; i < records.size(); ++i) takes_[i](to_json(records[i]));
   }
 
  private:

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <string_view>
 
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/model/memory_plan.hpp"
@@ -17,14 +17,14 @@
 namespace slipstick::convergence {
 namespace {
 
-/// A model that would take more is not made to know its cost: on any machine the same ones are.
+/// Bytes; no larger model is made to predict its cost, so that every machine makes the same models.
 constexpr double kLargestModelled = 16.0 * 0x1p30;
 /// Bytes of operators and workspaces for each cell, where symmetry leaves nothing out; measured, to a tenth.
 constexpr double kBytesOfCell = 400.0;
-/// As many as a person reads.
+/// Runs that a message names.
 constexpr std::size_t kMaxNamed = 10;
 
-/// A whole number, all of the word; 0: it is none.
+/// The whole number that the word is; 0: it is none.
 std::size_t number_in(std::string_view word) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -76,7 +76,7 @@ double predicted_cost(const PreparedRun& run) {
   }
 }
 
-Json run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const ProcessPool& pool) {
+ShardResult run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const ProcessPool& pool) {
   const std::vector<PreparedRun> all = different(runs);
   std::vector<double> costs;
   for (const PreparedRun& run : all) costs.push_back(predicted_cost(run));
@@ -88,37 +88,36 @@ Json run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const P
     own.push_back(all[i]);
     cost += costs[i];
   }
-  const std::vector<Json> results = pool.run_prepared(own);
-  FailedRuns failed;
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    // A run that memory did not allow is kept nowhere: the other shards miss it like one that failed.
-    const bool refused = results[i].value("out_of_memory", false);
-    failed.add(run_text(own[i].spec),
-               refused ? not_computed("failed", results[i]["message"], own[i].spec) : results[i]);
-  }
   const double total = std::accumulate(costs.begin(), costs.end(), 0.0);
-  Json result;
-  result["shard"] = {{"index", shard.index},
-                     {"count", shard.count},
-                     {"runs", own.size()},
-                     {"of_runs", all.size()},
-                     {"cost", total > 0.0 ? cost / total : 0.0},
-                     {"folder", pool.folder().string()}};
-  result["failed_runs"] = failed.json();
-  result["provenance"] = provenance(1);
+  ShardResult result{.shard = shard,
+                     .runs = own.size(),
+                     .of_runs = all.size(),
+                     .cost = total > 0.0 ? cost / total : 0.0,
+                     .folder = pool.folder(),
+                     .failed = {}};
+  const std::vector<SolveRecord> records = pool.run_prepared(own);
+  for (std::size_t i = 0; i < own.size(); ++i) result.failed.add(run_text(own[i].spec), records[i]);
   return result;
 }
 
-std::string shard_text(const Json& result) {
-  const Json& shard = result["shard"];
-  const std::string failed = failed_runs_text(result);
-  return fmt::format("shard {}/{}: {} of {} runs, {:.1f} % of the predicted work, kept in {}\n{}",
-                     shard["index"].get<int>(), shard["count"].get<int>(), shard["runs"].get<int>(),
-                     shard["of_runs"].get<int>(), 100.0 * shard["cost"].get<double>(),
-                     shard["folder"].get<std::string>(), failed.empty() ? "" : failed + "\n");
+Json to_json(const ShardResult& result) {
+  return {{"shard",
+           {{"index", result.shard.index},
+            {"count", result.shard.count},
+            {"runs", result.runs},
+            {"of_runs", result.of_runs},
+            {"cost", result.cost},
+            {"folder", result.folder.string()}}},
+          {"failed_runs", result.failed.json()},
+          {"provenance", provenance(1)}};
 }
 
-bool is_complete(const Json& result) { return result["failed_runs"]["count"] == 0; }
+std::string shard_text(const ShardResult& result) {
+  const std::string failed = result.failed.text();
+  return fmt::format("shard {}/{}: {} of {} runs, {:.1f} % of the predicted work, kept in {}\n{}",
+                     result.shard.index, result.shard.count, result.runs, result.of_runs, 100.0 * result.cost,
+                     result.folder.string(), failed.empty() ? "" : failed + "\n");
+}
 
 void require_finished(const std::vector<PreparedRun>& runs, const ProcessPool& pool) {
   const std::vector<PreparedRun> all = different(runs);

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "convergence/results/result_parts.hpp"
+#include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "convergence/runs/run_spec.hpp"
 
@@ -19,26 +20,35 @@ struct Shard {
 /// "2/4" is the second of four. Throws InputError for anything else.
 Shard read_shard(const std::string& word);
 
-/// The shard, counted from 1, to which each part goes: the costliest first, each to the shard that has least
-/// so far.
+/// The shard of each part, counted from 1: the costliest part first, each to the shard with the least work so
+/// far.
 std::vector<std::size_t> deal(const std::vector<double>& costs, std::size_t count);
 
-/// The work of a run, to compare it with others': predicted bytes of its operators and workspaces, which each
-/// iteration goes through, times its steps. The same on every machine, or shards would not fit together.
+/// The relative work of a run: predicted bytes of its operators and workspaces, which each iteration reads,
+/// times its steps. It is the same on every machine, since shards of several machines must fit together.
 double predicted_cost(const PreparedRun& run);
 
-/// Solves those runs that fall to a shard and keeps their results; equal runs count once. Says how many they
-/// are, what part of the predicted work, and which failed. Throws as ProcessPool::run().
-Json run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const ProcessPool& pool);
+/// The work of one shard.
+struct ShardResult {
+  Shard shard;
+  std::size_t runs = 0;
+  std::size_t of_runs = 0;  ///< in all shards
+  double cost = 0.0;        ///< part of the predicted work of all shards
+  std::filesystem::path folder;
+  FailedRuns failed;
+};
 
-/// The same for a person.
-std::string shard_text(const Json& result);
+/// Solves the runs of a shard and keeps their results; equal runs count once. Throws as ProcessPool::run().
+ShardResult run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const ProcessPool& pool);
 
-/// Whether each of the shard's runs has a result.
-bool is_complete(const Json& result);
+/// docs/schema/shard.schema.json
+Json to_json(const ShardResult& result);
 
-/// Throws InputError unless each run has a result in the pool's folder or in one that it joins: names the
-/// runs that have none, and says how to go on.
+/// For a person.
+std::string shard_text(const ShardResult& result);
+
+/// Throws InputError unless each run has a result in the pool's folder or in one that it joins. The message
+/// names the runs without a result, and how to go on.
 void require_finished(const std::vector<PreparedRun>& runs, const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

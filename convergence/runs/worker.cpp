@@ -4,6 +4,7 @@
 
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a worker says when a run is finished: no message has it.
+/// A worker writes it when a run is finished; no message contains it.
 constexpr char kFinished = '\0';
 
 std::vector<std::string> worker_words(const fs::path& program, const fs::path& folder,
@@ -52,14 +53,14 @@ RunSpec run_of(const Json& run) {
           .program_version = run.at(7)};
 }
 
-/// Missing where the input has ended, or is no run.
+/// Missing at the end of the input, and for an input that is no run.
 std::optional<RunSpec> next_run(std::istream& input) {
   const Json run = Json::from_cbor(input, false, false);
   return run.is_array() ? std::optional(run_of(run)) : std::nullopt;
 }
 
-/// Solves the scene and writes its fields; or why it cannot be solved.
-Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& cache) {
+/// Solves the scene and writes its fields; a scene that cannot be solved is refused or failed.
+SolveRecord solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& cache) {
   const RunSpec& spec = run.spec;
   SolvedScene solved;
   std::optional<solver::Solution> latest;
@@ -71,7 +72,7 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
   try {
     const bool exact = run.scene.model == solver::ModelChoice::exact;
     if (exact && spec.fields.empty() && !spec.profile)
-      return to_json(exact_record(run.scene, require_oracle(run.scene), 0.0));
+      return exact_record(run.scene, require_oracle(run.scene), 0.0);
     solved = solve_scene(
         run.scene, {.on_step = on_step,
                     .rounding = spec.rounding,
@@ -80,16 +81,16 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
   } catch (const solver::OutOfMemory&) {
     throw;
   } catch (const solver::InputError& error) {
-    return not_computed("refused", error.what(), spec);
+    return not_computed(RunStatus::refused, error.what(), spec);
   } catch (const ProgramFailure& error) {
-    return not_computed("failed", error.what(), spec);
+    return not_computed(RunStatus::failed, error.what(), spec);
   } catch (const std::bad_alloc&) {
     throw std::runtime_error("memory ran out");
   }
   if (!spec.fields.empty()) write_solution_fields(spec.fields, solved.solution, solved.exact);
   if (!spec.fields.empty() && before) write_solution_fields(step_before_file(spec.fields), *before, {});
   if (spec.profile) solved.record.profile = make_profile(solved.solution, solved.exact);
-  return to_json(solved.record);
+  return std::move(solved.record);
 }
 
 }  // namespace
@@ -100,11 +101,11 @@ Worker::Worker(const fs::path& program, const fs::path& folder, std::optional<do
 
 void Worker::start(const RunSpec& run) { program_.feed(text_of(run)); }
 
-Worker::Said Worker::next() {
-  if (program_.read_on()) return Said::ended;
-  if (!program_.captured().ends_with(kFinished)) return Said::more;
+Worker::Event Worker::next() {
+  if (program_.read_on()) return Event::ended;
+  if (!program_.captured().ends_with(kFinished)) return Event::output;
   program_.forget_captured();
-  return Said::finished;
+  return Event::finished;
 }
 
 ProgramEnd Worker::wait() {
@@ -115,8 +116,8 @@ ProgramEnd Worker::wait() {
 void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
                     const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache) {
   run.scene.memory_limit = memory_limit;
-  if (run.scene.threads == 0) run.scene.threads = 1;  // its processor is one of those that solve
-  cache.keep(run.name, run.cache_key, solve(run, shared), run.spec.fields);
+  if (run.scene.threads == 0) run.scene.threads = 1;  // the other processors solve other runs
+  cache.keep(run.name, run.cache_key, to_json(solve(run, shared)), run.spec.fields);
 }
 
 int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
@@ -128,7 +129,7 @@ int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
       keep_result_of(prepare_run(*spec), memory_limit, shared, *cache);
     } catch (const solver::OutOfMemory&) {
       throw;
-    } catch (const solver::InputError& error) {  // of the scene it is part of the result
+    } catch (const solver::InputError& error) {  // a file; a complaint about the scene is its result
       std::cerr << plain_text(fmt::format("slipstick: {}\n", error.what()));
       return kNotKept;
     }

@@ -11,46 +11,47 @@
 
 namespace slipstick::convergence {
 
-/// The exit code of a worker whose result, or the fields beside it, could not be written.
+/// The exit code of a worker that cannot write its result, or the fields that belong to it.
 inline constexpr int kNotKept = 3;
 
-/// A slipstick program that solves runs one after the other and keeps their results in a folder; all that it
-/// makes for one and the next needs too is made once. It ends with this process, see ProgramOptions::tied_by,
-/// and by itself over a run that fails. Who leaves it in the middle of a run kills it.
+/// A slipstick process that solves runs one after another and keeps their results in a folder. Tables and
+/// plans that several runs need are made once. The process ends with this one, see ProgramOptions::tied_by,
+/// and after a run that fails; the destructor kills a process that is still running.
 class Worker {
  public:
-  /// memory_limit: bytes that one run may take; none: what the machine has left.
+  /// memory_limit: bytes that one run may take; none: the memory that is free.
   Worker(const std::filesystem::path& program, const std::filesystem::path& folder,
          std::optional<double> memory_limit);
 
-  /// Starts a run; the one before has to be finished. Where the worker is dead, its output says so.
+  /// Starts a run, once the one before is finished. Where the process has ended, next() returns that.
   void start(const RunSpec& run);
 
-  /// The descriptor that is ready when next() is.
+  /// The descriptor to poll before next().
   int output() const { return program_.output(); }
 
-  /// What it says next: more is to come, its run is finished and it waits for another, or that it has ended.
-  enum class Said { more, finished, ended };
-  Said next();
+  /// Reads: a part of a message, the end of its run, or the end of the process.
+  enum class Event { output, finished, ended };
+  Event next();
 
-  /// Lets it end, where it has not, when its run is finished.
+  /// Lets the process end after its run, where it has not ended.
   void let_end() { program_.end_feed(); }
 
-  /// Waits for its end.
+  /// Waits for the end of the process.
   ProgramEnd wait();
 
  private:
   Program program_;
 };
 
-/// Solves a run, on one thread unless its scene says otherwise, and keeps its result. Throws InputError where
-/// a file cannot be written, and as below.
+/// Solves a run, on one thread unless its scene asks for more, and keeps its result. Throws InputError where
+/// a file cannot be written, and as serve_runs().
 void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
                     const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache);
 
-/// What a worker does: solves the runs that come on standard input, and says on standard output when each is
-/// finished. Returns its exit code: not 0 where a file cannot be written, and standard error says so. Throws
-/// std::runtime_error if memory runs out, OutOfMemory where a solve would take more than `memory_limit`.
+/// The main loop of a worker: solves the runs that come on standard input, and writes on standard output when
+/// each is finished. Returns its exit code: kNotKept where a file cannot be written, with a message on
+/// standard error. Throws std::runtime_error if memory runs out, OutOfMemory for a solve that would take more
+/// than `memory_limit`.
 int serve_runs(const std::filesystem::path& folder, std::optional<double> memory_limit);
 
 }  // namespace slipstick::convergence

@@ -32,9 +32,10 @@ bool all_converged(const Json& result) {
 int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& pool, std::ostream& text,
                     Json& result) {
   const Interrupts interrupts;
-  result = run_shard(study_runs(study, pool.memory_limit()), shard, pool);
-  text << shard_text(result);
-  return is_complete(result) ? 0 : 1;
+  const ShardResult done = run_shard(study_runs(study, pool.memory_limit()), shard, pool);
+  result = to_json(done);
+  text << shard_text(done);
+  return done.failed.count() == 0 ? 0 : 1;
 }
 
 int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostream& text, Json& result) {
