@@ -66,13 +66,13 @@ void solve_scenes(const std::vector<GateSource>& sources, const ProcessPool& poo
       results[i].refused = error.what();
     }
   }
-  const std::vector<Json> solved = pool.run_prepared(runs);
+  const std::vector<SolveRecord> solved = pool.run_prepared(runs);
   std::set<GateSource> timed;
   for (std::size_t k = 0; k < solved.size(); ++k) {
     SourceResult& found = results[places[k]];
-    found.result = solved[k];
-    if (solved[k].value("out_of_memory", false)) found.refused = solved[k]["message"];
-    const double seconds = seconds_of(solved[k]);
+    found.result = to_json(solved[k]);
+    if (solved[k].out_of_memory) found.refused = solved[k].message;
+    const double seconds = solved[k].seconds();
     if (timed.insert(sources[places[k]]).second && std::isfinite(seconds)) found.seconds = seconds;
   }
 }

@@ -21,9 +21,9 @@ const std::string kBrokeDown = "the solve broke down";
 const std::string kBroken = "the solve broke down, or there is no friction";
 const std::string kNoPeak = "the exact pressure has no finite peak";
 
-Pair pair_or(const std::array<double, 2>& values, const std::string& why_missing) {
-  const Pair pair{.values = values};
-  return pair.is_known() ? pair : Pair{.why_missing = why_missing};
+Components pair_or(const std::array<double, 2>& values, const std::string& why_missing) {
+  const Components pair{.values = values};
+  return pair.is_known() ? pair : Components{.why_missing = why_missing};
 }
 
 // ---------------------------------------------------------------- contact, loads, energies

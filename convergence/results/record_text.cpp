@@ -19,7 +19,7 @@ std::string error_text(double error) {
   return std::isnan(error) ? "" : fmt::format("   (error {:+.1e})", error);
 }
 
-std::string pair_text(const Pair& pair) {
+std::string pair_text(const Components& pair) {
   return fmt::format("[{}, {}]", number_text(pair.values[0]), number_text(pair.values[1]));
 }
 

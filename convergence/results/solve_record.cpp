@@ -28,7 +28,7 @@ class FieldWriter {
   void operator()(const char* key, const Number& number) {
     put_or_reason(key, std::isfinite(number.value), number.value, number.why_missing);
   }
-  void operator()(const char* key, const Pair& pair) {
+  void operator()(const char* key, const Components& pair) {
     put_or_reason(key, pair.is_known(), pair.values, pair.why_missing);
   }
   void operator()(const char* key, const RunStatus& status) { object_[key] = to_string(status); }
@@ -94,7 +94,7 @@ class FieldReader {
   explicit FieldReader(const Json& object) : object_(object) {}
 
   void operator()(const char* key, Number& number) { get_or_reason(key, number.value, number.why_missing); }
-  void operator()(const char* key, Pair& pair) { get_or_reason(key, pair.values, pair.why_missing); }
+  void operator()(const char* key, Components& pair) { get_or_reason(key, pair.values, pair.why_missing); }
   void operator()(const char* key, RunStatus& status) {
     const auto found = std::ranges::find(kStatusWords, object_.at(key).get<std::string>());
     if (found == kStatusWords.end()) throw solver::InputError("a result", "has no such status");

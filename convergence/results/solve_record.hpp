@@ -34,7 +34,7 @@ inline Number number_or(double value, const std::string& why_missing) {
 }
 
 /// Components along x1 and x2, or NaN and the reason why they do not exist.
-struct Pair {
+struct Components {
   std::array<double, 2> values{Number().value, Number().value};
   std::string why_missing = {};
 
@@ -86,14 +86,14 @@ struct LimitRecord {
 
 /// Tangential loads and motions since the first step began.
 struct LoadsRecord {
-  Number twist_angle = {};   ///< rad
-  Number moment = {};        ///< N m
-  Number moment_limit = {};  ///< N m, without force
-  Number moment_ratio = {};  ///< moment over moment_limit
-  Number twist = {};         ///< G a^2 twist_angle / (mu W)
-  std::string warning = {};  ///< why an imposed load is likely a mistake; empty: it is not
-  Pair force = {};           ///< N
-  Pair displacement = {};    ///< m
+  Number twist_angle = {};       ///< rad
+  Number moment = {};            ///< N m
+  Number moment_limit = {};      ///< N m, without force
+  Number moment_ratio = {};      ///< moment over moment_limit
+  Number twist = {};             ///< G a^2 twist_angle / (mu W)
+  std::string warning = {};      ///< why an imposed load is likely a mistake; empty: it is not
+  Components force = {};         ///< N
+  Components displacement = {};  ///< m
   LimitRecord limit = {};
 };
 
@@ -162,12 +162,12 @@ struct ExactRecord {
   Number twist = {};
   Number moment = {};
   Number moment_limit = {};
-  Pair force = {};
-  Pair displacement = {};
+  Components force = {};
+  Components displacement = {};
   Number stick_radius = {};
   Number stick_ratio = {};
   Number contact_radius = {};
-  Pair semi_axes = {};  ///< m, the longer one first
+  Components semi_axes = {};  ///< m, the longer one first
   Number peak_pressure = {};
   Number approach = {};
   Number dissipated = {};
