@@ -72,14 +72,14 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
       .tolerance = scene.tolerance,
       .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
       .solve_pressure =
-          [&](const ArrayXd& opening, const TurnGoal& goal) {
+          [&](const ArrayXd& opening, const StaggeredTarget& goal) {
             NormalSolution normal = find_pressure(scene, model, step, opening, goal, progress);
             solution.pressure_applications += finest_grid_applications(normal.grids);
             solution.safeguards += normal.safeguards;
             return normal;
           },
       .solve_tractions =
-          [&](const ArrayXd& pressure, const TurnGoal& goal) {
+          [&](const ArrayXd& pressure, const StaggeredTarget& goal) {
             loads = load_step(scene, model, step, pressure, state);
             if (goal.gap > 0.0 && !loads.carried()) return TangentialSolution{};
             require_carried(scene, model, step, loads);
@@ -154,7 +154,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   open.add(before.end, end_of(solution), solution.resolution);
   solution.resolution.mesh = open.mesh();
   if (solution.status == Status::converged) {
-    solution.message = beyond(solution.certificate, promised(scene));
+    solution.message = violated_bounds(solution.certificate, promised(scene));
     if (!solution.message.empty()) solution.status = Status::not_converged;
   }
   if (after != nullptr) {

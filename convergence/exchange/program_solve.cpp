@@ -63,7 +63,7 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
   if (!read.tractions) answer.scene = pressed_alone(std::move(answer.scene));
   answer.exact = find_oracle(read.tractions ? scene : answer.scene);
   answer.solution = describe_given(answer.scene, read.fields);
-  const std::string off = solver::beyond(answer.solution.certificate, kSameLoads);
+  const std::string off = solver::violated_bounds(answer.solution.certificate, kSameLoads);
   if (read.tractions && !off.empty()) {
     answer.solution.status = solver::Status::not_converged;
     answer.solution.message = off + ": no answer to these loads, whatever " + program.name + " says";

@@ -5,11 +5,14 @@
 
 namespace slipstick::solver {
 
-/// Anderson's acceleration (1965) of a fixed point x = G(x): the next x is the combination of the last ones
-/// that would leave the least residual, r = G(x) - x, were G affine, and a step along that residual.
+/// Anderson's acceleration (1965) of a fixed point x = G(x):
+///
+/// 1. Residual r = G(x) - x, and the last changes of x and r.
+/// 2. The combination of the last x whose residual, for an affine G, is least.
+/// 3. The next x: that combination plus a step along its residual.
 class Anderson {
  public:
-  /// depth: steps that are combined, kMaxConditions at most; none: x only moves along its residual.
+  /// depth: number of steps that are combined, at most kMaxConditions; with 0 x moves along its residual.
   explicit Anderson(int depth) : depth_(depth) {}
 
   /// From x, whose residual is given, to the next x; step: the part of the residual that x moves by.

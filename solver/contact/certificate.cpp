@@ -42,8 +42,7 @@ struct CertificateSums {
   }
 };
 
-/// all: every cell; discs: those of the friction bound. Rotation: a field, or what works it out, in cells of
-/// one row.
+/// all: every cell; discs: of the friction bound. Rotation: a field, or a MotionField.
 template <class Rotation>
 Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const TractionField& field,
                            const Eigen::ArrayXd& friction_bound, const Rotation& rotation, double moment,
@@ -63,7 +62,7 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
     const auto t1 = rotation.segment(first, n);
     const auto t2 = rotation.segment(first + cells, n);
     const auto size = (q1.square() + q2.square()).sqrt();
-    // Outside the contact any traction at all is beyond every bound.
+    // Outside the contact any traction exceeds every bound.
     const auto beyond = (size == 0.0).select(0.0, std::numeric_limits<double>::infinity() + 0.0 * size);
     const double worst = (bound > 0.0).select(size / bound, beyond).template maxCoeff<Eigen::PropagateNaN>();
     sum += {.friction = bound.sum(),
@@ -79,7 +78,7 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
   if (sums.friction == 0.0 && sums.worst == 0.0) return {};
 
   Certificate certificate{};
-  // A NaN stays, and so does what is less than nothing.
+  // NaN and negative values stay.
   const double energy = before.energy > 0.0 && sums.energy <= before.energy ? before.energy : sums.energy;
   certificate.energy = energy;
   certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / energy;
@@ -113,7 +112,7 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
                         MotionField(grid, 0.0, 0.0, 1.0), moment, force, least_eigenvalue, before);
 }
 
-std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {
+std::string violated_bounds(const Certificate& certificate, const CertificateBounds& bounds) {
   if (!is_certified(certificate.gap, certificate.rounding, bounds.gap)) {
     return fmt::format("gap / energy is {:.3g}, allowed: {:.3g}", certificate.gap, bounds.gap);
   }

@@ -17,38 +17,42 @@ struct TractionField {
   const Eigen::ArrayXd& slip;
 };
 
-/// How far a result is from Coulomb's law and equilibrium; needs no reference solution. All relative; NaN
-/// where the fields hold NaN, so that no bound passes.
+/// The distance of a result from Coulomb's law and equilibrium, without a reference solution:
+///
+/// 1. gap: sum of s.q + mu p |s|, the duality gap, over q.Kq/2.
+/// 2. energy_error: a bound of second order in the slip of stick cells.
+/// 3. rounding of both, and the violation of moment, force and friction bound.
+///
+/// All members are relative, and NaN where fields are NaN, so that no bound passes.
 struct Certificate {
   /// sum(s.q + mu p |s|) / (q.Kq/2). Each term is non-negative where |q| <= mu p and zero only where
   /// Coulomb's law holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the
   /// given moment, so that |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
-  /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in what slip a stick cell has
-  /// left: the sum over cells of the most that -s.d - k|d|^2/2 can be for |q + d| <= mu p, with q.Kq >= k
-  /// q.q. Never above the gap, and free of its rounding: at small loads, where the gap weighs rounding errors
-  /// of the displacement with the whole of mu p, it stays as small as ever.
+  /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in the remaining slip of stick
+  /// cells: the sum over cells of max over |q + d| <= mu p of -s.d - k|d|^2/2, with q.Kq >= k q.q. It never
+  /// exceeds the gap, and is free of the gap's rounding: at small loads the gap weights rounding errors of
+  /// the displacement by mu p.
   double energy_error;
-  /// What rounding of displacements, slips and tractions may do to the gap, over q.Kq/2: no smaller gap can
-  /// be distinguished from zero.
+  /// Rounding error of the gap over q.Kq/2: a smaller gap cannot be distinguished from zero.
   double rounding;
   double moment;          ///< |t.q Delta - M| / M_lim
   double force;           ///< |sum of q - F/Delta| / sum of mu p
   double friction_bound;  ///< max |q|/(mu p) - 1
-  /// What the gap, its bound of second order and its rounding are relative to: q.Kq/2, or that of a state
-  /// before where it was more. An error is absolute, and a state that is all but unloaded inherits it.
+  /// The energy to which gap, energy_error and rounding are relative: q.Kq/2, or an earlier state's if that
+  /// was larger. Errors are absolute, and a nearly unloaded state inherits them.
   double energy = 0.0;
 };
 
-/// What a step's certificate takes over from the state that the step starts from.
+/// The state before a step, for its certificate.
 struct Inherited {
   double energy = 0.0;  ///< see Certificate::energy
-  double motion = 0.0;  ///< of the step: the largest in the contact, in size
+  double motion = 0.0;  ///< largest |rigid displacement| of the step in the contact
 };
 
-/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: M/Delta and F/Delta
-/// that were asked for. least_eigenvalue: of the operator, a lower bound (elastic_law.hpp); with 0 the energy
-/// error is the gap.
+/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: the imposed M/Delta
+/// and F/Delta. least_eigenvalue: a lower bound for the operator (elastic_law.hpp); with 0 the energy error
+/// is the gap.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {},
                     double least_eigenvalue = 0.0);
@@ -65,11 +69,11 @@ struct CertificateBounds {
   double friction_bound;
 };
 
-/// The first member that is beyond its bound, or NaN, with its value and the bound in words; empty where the
+/// The first member that exceeds its bound or is NaN, with value and bound in words; empty if the
 /// certificate holds.
-std::string beyond(const Certificate& certificate, const CertificateBounds& bounds);
+std::string violated_bounds(const Certificate& certificate, const CertificateBounds& bounds);
 
-/// Angle between slip and the reverse of traction, in degrees; zero under Coulomb's law.
+/// Angle between slip and -traction, in degrees; zero under Coulomb's law.
 struct SlipDirection {
   double mean;  ///< weighted by slip
   double max;   ///< among cells that slip at least kNoticeableSlip of the largest slip

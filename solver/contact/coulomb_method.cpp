@@ -17,13 +17,13 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Torsion's q1 is even in x1 and odd in x2, q2 the reverse.
+/// Torsion: q1 is even in x1 and odd in x2, q2 odd in x1 and even in x2.
 constexpr std::array<Parity, 2> kTorsionParities{{{1, -1}, {-1, 1}}};
 
 /// A rigid motion, or the load along it.
 enum class Motion { delta1, delta2, twist };
 
-/// Which motions the program finds, for their loads are imposed, and which it is given: the order of its
+/// The motions to be found, whose loads are imposed, and the given ones, in the order of the program's
 /// conditions.
 struct Conditions {
   std::vector<Motion> imposed, given;
@@ -37,7 +37,7 @@ struct Conditions {
     if (problem.twist) given.push_back(Motion::twist);
   }
 
-  /// Among the imposed ones; empty: not there.
+  /// The index of a motion among the imposed ones; empty: it is not imposed.
   std::optional<Index> among_imposed(Motion motion) const {
     const auto found = std::ranges::find(imposed, motion);
     if (found == imposed.end()) return std::nullopt;
@@ -57,10 +57,10 @@ std::optional<double> given_of(const TangentialProblem& problem, Motion motion) 
   return (*problem.displacement)[motion == Motion::delta1 ? 0 : 1];
 }
 
-/// The tangential problem on one grid, as solve_nested() asks for it.
+/// The tangential problem on one grid: a NestedProblem.
 class TangentialOnGrid {
  public:
-  /// turns: onto itself under half a turn, as far as the friction bound does.
+  /// turns: true if all fields but the friction bound turn into themselves under half a turn.
   TangentialOnGrid(const Grid& grid, TangentialProblem problem, bool turns)
       : grid_(grid),
         problem_(std::move(problem)),
@@ -71,9 +71,9 @@ class TangentialOnGrid {
   static std::span<const Parity> parities() { return kTorsionParities; }
   FrictionDiscs admissible() const { return {packing_.cells(), problem_.friction_bound}; }
   Packing& packing() { return packing_; }
-  /// The contact is known.
-  static void look_ahead(const TangentialOnGrid&, const NewtonSummary&, const ArrayXd&) {}
-  static bool overlooks(LinearOperator&, const NestedSummary&, double) { return false; }
+  // The contact cells are known.
+  static void predict_candidates(const TangentialOnGrid&, const NewtonSummary&, const ArrayXd&) {}
+  static bool missed_contact_cells(LinearOperator&, const NestedSummary&, double) { return false; }
   ArrayXd start() const {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
   }
@@ -83,7 +83,7 @@ class TangentialOnGrid {
     problem_.initial_displacement = in_own_rows(grid_, std::move(problem_.initial_displacement));
   }
 
-  /// Once: what it refers to takes the place of what the problem was given.
+  /// Call it once: it packs the problem's fields.
   ConvexProgram program(LinearOperator& op) {
     reference_ = std::move(problem_.initial_displacement);
     if ((problem_.start != 0.0).any()) {
@@ -96,7 +96,7 @@ class TangentialOnGrid {
     for (MotionField& motion : motions_) motion = motion.packed(packing_);
     ConvexProgram program;
     program.energy_before = problem_.energy_before;
-    if (turns_) program.symmetrise = [this](ArrayXd& q) { symmetrise(q); };
+    program.turns_into_itself = turns_;
     if (reference_.size() > 0) program.g = &reference_;
     const Conditions conditions(problem_);
     for (const Motion motion : conditions.imposed) {
@@ -128,16 +128,6 @@ class TangentialOnGrid {
   }
 
  private:
-  /// A packed field. Rounding is not its own image, and is no smaller after some steps of a history: without
-  /// translations nothing else takes out the force that it leaves.
-  void symmetrise(ArrayXd& q) const {
-    if (!grid_.ranks.several()) return turn_into_itself(q);
-    ArrayXd whole = packing_.unpacked(q);
-    share_rows(grid_, whole);
-    turn_into_itself(whole);
-    q = packing_.packed(whole);
-  }
-
   const MotionField& field(Motion motion) const { return motions_[static_cast<std::size_t>(motion)]; }
 
   Grid grid_;
@@ -148,7 +138,7 @@ class TangentialOnGrid {
   Packing packing_;  ///< of the contact
 };
 
-/// The motions: those that the program found, and those that it was given.
+/// Sets the solution's motions: found, given, or 0.
 void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
                      const TangentialProblem& problem) {
   const Conditions conditions(problem);
@@ -170,8 +160,7 @@ ArrayXd stick_area(const ArrayXd& traction, const ArrayXd& bound) {
   return (norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
 }
 
-/// Nothing bears on the surfaces along them, and nothing has: without tractions and motions Coulomb's law
-/// holds.
+/// True without tangential loads, motions and earlier tractions: then zero tractions satisfy Coulomb's law.
 bool is_at_rest(const TangentialProblem& problem) {
   const auto nothing = [](const std::optional<std::array<double, 2>>& pair) {
     return !pair || *pair == std::array<double, 2>{};
@@ -181,7 +170,7 @@ bool is_at_rest(const TangentialProblem& problem) {
          (problem.initial_displacement == 0.0).all() && (problem.start == 0.0).all();
 }
 
-/// No traction, and no motion but one that is given: all of the contact sticks, where friction is.
+/// No traction, and only the given motion: every cell with friction sticks.
 TangentialSolution at_rest(const Grid& grid, const TangentialProblem& problem) {
   TangentialSolution solution;
   solution.twist = problem.twist.value_or(0.0);
@@ -217,7 +206,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
-    solution.message = fmt::format("{}: gap / energy {:.3g}, asked for {:.3g}", nested.newton.message,
+    solution.message = fmt::format("{}: gap / energy {:.3g}, tolerance {:.3g}", nested.newton.message,
                                    nested.newton.gap, options.tolerance);
   }
   describe_motion(solution, nested.newton, loads);

@@ -9,7 +9,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-/// From the root mean square of s down to a slip that no file's digits distinguish from none.
+/// From the root mean square of s down to a slip below the digits of any file.
 constexpr Smoothing kSlipSmoothing{.first = 1.0, .least = 1e-9};
 
 /// A contact whose fields are zero in cells without a bound.

@@ -13,19 +13,19 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr int kMaxTurns = 100;
-/// The gap has to fall by this part of the step below the largest of so many turns before, or the next ones
-/// are more careful: it may rise for a turn or two on its way.
+/// The step is halved unless the gap falls by this part of the step below the largest of the last kLastGaps
+/// gaps: it may rise for a turn or two.
 constexpr double kProgress = 0.1;
 constexpr std::size_t kLastGaps = 3;
 constexpr double kMinStep = 1.0 / 64.0;
 constexpr double kNoGapYet = std::numeric_limits<double>::infinity();
-/// Gap that is enough in the first turn, and in the others as a part of the one that the last has left.
+/// Relative gap at which the first turn stops, and for later turns its ratio to the last turn's gap.
 constexpr double kFirstGap = 1e-2;
 constexpr double kPartOfGap = 0.03;
-/// Changes that are combined.
+/// Changes that Anderson's acceleration combines.
 constexpr int kDepth = 4;
 
-/// Complementarity gap of a pressure under an opening besides its own, over p.Kp/2.
+/// Complementarity gap of a pressure with an additional opening, over p.Kp/2.
 class Complementarity {
  public:
   Complementarity(const Elasticity& elasticity, const Grid& grid, const ArrayXd& gap)
@@ -44,7 +44,8 @@ class Complementarity {
   Cached<LinearOperator> op_;
   ArrayXd reachable_, height_, u_;
 };
-/// The turns of one solve, each from the last one's pressure and tractions.
+
+/// The turns of one solve. Each starts from the pressure and tractions of the last.
 class Turns {
  public:
   Turns(const Elasticity& elasticity, const Grid& grid, const CoupledProblem& problem)
@@ -58,7 +59,7 @@ class Turns {
     double step = 1.0;
     double wanted = kFirstGap;
     for (solution_.turns = 1;; ++solution_.turns) {
-      // A load that a roughly solved pressure does not carry may be carried by one that is solved in full.
+      // A pressure solved to its tolerance may carry a load that a rough one does not.
       if (!take(wanted) && !take(0.0)) return std::move(solution_);
       const double largest = std::ranges::max(last_gaps_);
       measure();
@@ -78,14 +79,14 @@ class Turns {
     return solution_.normal.status == Status::converged && solution_.tangential.status == Status::converged;
   }
 
-  /// gap: over the energy, that is enough for each of the two; 0: as well as is asked for.
+  /// gap: relative gap at which to stop both; 0: the scene's tolerance.
   bool take(double gap) {
     solution_.normal = problem_.solve_pressure(opening_, {gap, pressure_});
     solution_.tangential = problem_.solve_tractions(solution_.normal.pressure, {gap, traction_guess()});
     return converged();
   }
 
-  /// Tractions that slip keep to their circles.
+  /// The last tractions; slipping ones are scaled to their new circles.
   ArrayXd traction_guess() const {
     if (traction_.size() == 0) return {};
     const ArrayXd size = norms(traction_);
@@ -94,14 +95,14 @@ class Turns {
     return onto.replicate(2, 1) * traction_;
   }
 
-  /// How far the opening is from that of the last tractions, and the pressure from one under that.
+  /// change_: opening by the last tractions less opening_; gap_: of the pressure under the former.
   void measure() {
     change_ = opening_by_(solution_.tangential.traction) - opening_;
     gap_ = complementarity_(solution_.normal.pressure, opening_ + change_);
     solution_.normal.complementarity = gap_;
   }
 
-  /// The tractions in full, under a pressure that is good enough.
+  /// Solves the tractions to the scene's tolerance once the pressure has converged.
   bool finish() {
     const ArrayXd guess = solution_.tangential.traction;
     solution_.tangential = problem_.solve_tractions(solution_.normal.pressure, {0.0, guess});
@@ -109,8 +110,7 @@ class Turns {
     return converged();
   }
 
-  /// The approach is the mean of the displacement, weighted with the pressure: it takes what the last
-  /// tractions have changed.
+  /// The approach is the mean of the displacement, weighted by the pressure; it includes change_.
   CoupledSolution settled() {
     const ArrayXd& pressure = solution_.normal.pressure;
     solution_.normal.approach += (pressure * change_).sum() / pressure.sum();
@@ -120,15 +120,14 @@ class Turns {
   CoupledSolution unsettled() {
     solution_.normal.status = Status::not_converged;
     solution_.normal.message = fmt::format(
-        "pressure and shear drive each other apart: complementarity gap {:.3g} after {} turns, asked for "
-        "{:.3g}{}; "
-        "contact.coupling = \"pressure\" leaves the shear's effect on the pressure out",
+        "the staggered iteration of pressure and shear diverges: complementarity gap {:.3g} after {} turns, "
+        "tolerance {:.3g}{}; contact.coupling = \"pressure\" omits the shear's effect on the pressure",
         gap_, solution_.turns, problem_.tolerance, at_the_edge());
     return std::move(solution_);
   }
 
-  /// A bound that does not fall to zero with the pressure jumps where a cell comes into contact. With its
-  /// shear such a cell may open, and without it close: then no state of it is an equilibrium.
+  /// A friction bound that is not zero at zero pressure jumps where a cell comes into contact. If the shear
+  /// of the cell opens it and without shear it closes, no state is an equilibrium.
   std::string at_the_edge() const {
     constexpr double kHardlyPressed = 1e-9;
     constexpr double kJump = 0.01;
@@ -138,9 +137,8 @@ class Turns {
     const Index switched = (switches_ > 1).count();
     if (!jumps || switched == 0) return "";
     return fmt::format(
-        ", and {} cells at the edge come into contact and leave it again: each carries all of its friction "
-        "as "
-        "soon as it touches, which opens it, so that this mesh may have no answer",
+        ", and {} cells at the edge come into contact and leave it again: each carries its full friction as "
+        "soon as it touches, which opens it, so that this mesh may have no solution",
         switched);
   }
 

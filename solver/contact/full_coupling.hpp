@@ -21,20 +21,25 @@ class ShearOpening {
   Cached<LinearOperator> op_;
 };
 
-/// What a turn asks of one of the two problems.
-struct TurnGoal {
-  double gap = 0.0;           ///< over the energy, that is enough; 0: as well as it can be asked for
+/// When a turn stops one of the two problems, and where it starts.
+struct StaggeredTarget {
+  double gap = 0.0;           ///< relative gap at which to stop; 0: the scene's tolerance
   Eigen::ArrayXd guess = {};  ///< a field near the answer; empty: none
 };
 
-/// The two problems that are solved in turns, each with the other's answer, on the whole grid.
+/// A result as a function of the other problem's field.
+template <class Result, class... Target>
+using Under = std::function<Result(const Eigen::ArrayXd& field, const Target&... target)>;
+
+/// The two problems of a staggered iteration on the whole grid: each is solved with the last result of the
+/// other problem.
 struct CoupledProblem {
-  Eigen::ArrayXd gap;       ///< undeformed; infinite where the bodies cannot touch
-  Eigen::ArrayXd traction;  ///< guess, 2*cells
-  double tolerance;         ///< on the complementarity gap
-  std::function<Eigen::ArrayXd(const Eigen::ArrayXd& pressure)> friction_bound;
-  std::function<NormalSolution(const Eigen::ArrayXd& opening, const TurnGoal&)> solve_pressure;
-  std::function<TangentialSolution(const Eigen::ArrayXd& pressure, const TurnGoal&)> solve_tractions;
+  Eigen::ArrayXd gap;                    ///< undeformed; infinite where the bodies cannot touch
+  Eigen::ArrayXd traction;               ///< guess, 2*cells
+  double tolerance;                      ///< on the complementarity gap
+  Under<Eigen::ArrayXd> friction_bound;  ///< under a pressure
+  Under<NormalSolution, StaggeredTarget> solve_pressure;       ///< under an opening by shear
+  Under<TangentialSolution, StaggeredTarget> solve_tractions;  ///< under a pressure
 };
 
 struct CoupledSolution {
@@ -43,12 +48,15 @@ struct CoupledSolution {
   int turns = 0;
 };
 
-/// Panagiotopoulos' method (1975): pressure under the opening by shear, tractions under that pressure, and
-/// again, until the pressure's complementarity gap holds with the opening of the last tractions. Each turn
-/// starts from the last ones, is solved no better than its part of the gap, and ends in Anderson's
-/// combination of them; the last tractions are solved as well as is asked for. Where the gap does not fall,
-/// the opening follows by half, a quarter, ... of its change. A pressure that does not settle is a status
-/// with its reason.
+/// Panagiotopoulos' staggered iteration (1975) for the opening o = o(q) by shear:
+///
+/// 1. Pressure p under the opening o, then tractions q under p, both to a part of the last gap.
+/// 2. Complementarity gap of p under the opening o(q) of the new tractions.
+/// 3. Below the tolerance: q is solved to the scene's tolerance; stop if the gap still holds.
+/// 4. Otherwise o by Anderson's combination of the last openings, with a step that is halved where the gap
+///    does not fall; again from 1.
+///
+/// Divergence is a status with its reason.
 CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
                                     const CoupledProblem& problem);
 

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Enough when upper and lower bound of the factor agree to this, some units of rounding: the motion, of
-/// which they depend on to second order, has then eight digits or so.
+/// Upper and lower bound of the factor agree to this, some units of rounding. They depend on the motion to
+/// second order, so that the motion has about eight digits.
 constexpr double kTolerance = 2e-15;
 
 /// The root mean square of |v| is 1 at the start.
@@ -140,10 +140,10 @@ struct Motions {
   Matrix<double, 3, Eigen::Dynamic, 0, 3, 2> directions;
 };
 
-/// A lower bound of the least friction over all of the motions, by tractions that are within their bounds
-/// and whose resultants do the work q.v in the motion at hand and q.v + r.(z' - z) in any other one. A cell
-/// at a kink of |v|, where the smoothed law leaves a traction of its own making, takes as much of r as it
-/// can. What is left counts with the furthest that the minimiser can be: work >= bound |v|^2 / max |v| >=
+/// A lower bound of the least friction over all motions, by admissible tractions whose resultants do the work
+/// q.v in this motion and q.v + r.(z' - z) in another one. The cell nearest to the kink of |v|, where the
+/// smoothed law leaves the traction open, absorbs as much of r as it can. The rest is multiplied by the
+/// largest possible distance of the minimiser: work >= bound |v|^2 / max |v| >=
 /// gyration^2 |motion| / sqrt(1 + radius^2).
 double lower_bound(const Contact& contact, const Friction& friction, const Motions& motions,
                    double smoothing) {
@@ -211,7 +211,7 @@ void require_valid(const Grid& grid, const ArrayXd& friction_bound, const Impose
   }
 }
 
-/// Beyond so many radii of gyration rounding decides where the turning centre is: a translation.
+/// Radii of gyration beyond which the turning centre is lost in rounding: the motion is a translation.
 constexpr double kFurthestCentre = 1e10;
 
 std::optional<std::array<double, 2>> turning_centre(const Contact& contact, const Vector3d& motion) {

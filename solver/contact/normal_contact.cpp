@@ -17,12 +17,12 @@ using Eigen::ArrayXd;
 
 constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 
-/// Cells are looked at that may be in contact by what a coarse grid says: it has a pressure there, or with
-/// its displacement they open by no more than bodies overlap elsewhere, in the root mean square. If these are
-/// more than this part of those that can touch, all are.
+/// Candidate cells are predicted from the coarse grid: cells with a pressure there, or whose opening under
+/// its displacement is below the root mean square of the overlap elsewhere. Above this fraction of the cells
+/// that can touch, all of these are candidates.
 constexpr double kMostOfAll = 0.7;
 
-/// The normal problem on one grid, as solve_nested() asks for it.
+/// The normal problem on one grid: a NestedProblem.
 class PressureOnGrid {
  public:
   using Gap = std::shared_ptr<const ArrayXd>;
@@ -52,7 +52,7 @@ class PressureOnGrid {
     return {.g = &heights_, .imposed = {{&packed_approach_, total_pressure_}}};
   }
 
-  /// A coarse cell can touch where half of it can, at the mean height of that part.
+  /// A coarse cell can touch if half of its area can, and has the mean gap of that area.
   PressureOnGrid coarsened(const Grid& coarse) const {
     const ArrayXd part = restrict_to(coarse, grid_, gap_->isFinite().cast<double>());
     const ArrayXd height = restrict_to(coarse, grid_, gap_->isFinite().select(*gap_, 0.0));
@@ -63,8 +63,8 @@ class PressureOnGrid {
             total_pressure_ * grid_.cell_area() / coarse.cell_area()};
   }
 
-  /// By the opening that the coarse grid's displacement leaves. pressure: the coarse grid's.
-  void look_ahead(PressureOnGrid& coarse, const NewtonSummary& found, const ArrayXd& pressure) {
+  /// From the opening under the coarse grid's displacement. pressure: the coarse grid's.
+  void predict_candidates(PressureOnGrid& coarse, const NewtonSummary& found, const ArrayXd& pressure) {
     if (!found.converged) return;
     share_rows(coarse.grid_, coarse.displacement_);
     ArrayXd opening = prolong_to(grid_, coarse.grid_, coarse.displacement_, kPressureParities);
@@ -74,11 +74,12 @@ class PressureOnGrid {
       sum += opening.segment(first, last - first).square().sum();
     });
     const double overlap = std::sqrt(square / static_cast<double>(std::max<Index>(closed.count(), 1)));
-    look_at([&](Index i) { return can_touch(i) && (pressure[i] > 0.0 || opening[i] < overlap); });
+    set_candidates([&](Index i) { return can_touch(i) && (pressure[i] > 0.0 || opening[i] < overlap); });
   }
 
-  /// Whether other cells open less than those that were looked at. The gap is that of all then.
-  bool overlooks(LinearOperator& op, NestedSummary& result, double tolerance) {
+  /// True if other cells open less than the candidates, and the gap over all cells exceeds the tolerance:
+  /// then the candidates are enlarged.
+  bool missed_contact_cells(LinearOperator& op, NestedSummary& result, double tolerance) {
     if (!result.newton.converged || cells_.count() == reachable_.count()) {
       displacement_ = packing_.unpacked(result.displacement);
       return false;
@@ -97,16 +98,15 @@ class PressureOnGrid {
           .value;
     };
     const double lowest = lowest_of(cells_);
-    const double overlooked = lowest - lowest_of(reachable_);
-    result.newton.gap += overlooked * total_pressure_ / energy;
+    const double missed = lowest - lowest_of(reachable_);
+    result.newton.gap += missed * total_pressure_ / energy;
     if (!(result.newton.gap > tolerance)) {
       result.newton.converged = result.newton.gap <= tolerance;
       return false;
     }
     result.field = packing_.unpacked(result.field);
-    look_at([&](Index i) {
-      return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + overlooked;
-    });
+    set_candidates(
+        [&](Index i) { return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + missed; });
     return true;
   }
 
@@ -119,7 +119,7 @@ class PressureOnGrid {
     return cells;
   }
   template <typename Contains>
-  void look_at(const Contains& contains) {
+  void set_candidates(const Contains& contains) {
     cells_ = cells_where(contains);
     if (static_cast<double>(cells_.count()) > kMostOfAll * static_cast<double>(reachable_.count()))
       cells_ = reachable_;
@@ -128,13 +128,13 @@ class PressureOnGrid {
   Grid grid_;
   MotionField approach_;
   Gap gap_;
-  Sweep reachable_, cells_;  ///< where the bodies can touch, and of these those that are looked at
+  Sweep reachable_, cells_;  ///< cells that can touch, and the candidates among them
   double total_pressure_;
   ArrayXd guess_;
   Packing packing_;
   MotionField packed_approach_ = approach_;
   ArrayXd heights_;       ///< packed
-  ArrayXd displacement_;  ///< K p, of all cells once some were left out
+  ArrayXd displacement_;  ///< K p in all cells, once some were no candidates
 };
 
 void require_valid(const NormalProblem& problem, const Grid& grid) {
@@ -159,7 +159,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
-    solution.message = fmt::format("{}: complementarity gap {:.3g}, asked for {:.3g}", nested.newton.message,
+    solution.message = fmt::format("{}: complementarity gap {:.3g}, tolerance {:.3g}", nested.newton.message,
                                    nested.newton.gap, options.tolerance);
   }
   solution.pressure = std::move(nested.field);
@@ -178,7 +178,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                     const NormalProblem& problem, const NormalOptions& options) {
   require_valid(problem, grid);
-  // From a guess no other solve starts again.
+  // The same guess does not come twice.
   if (problem.guess.size() > 0 || !elasticity.usable_cache())
     return find_normal_contact(elasticity, grid, problem, options);
   CacheKey key = elasticity.key("pressure", grid);

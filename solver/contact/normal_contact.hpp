@@ -11,8 +11,8 @@
 
 namespace slipstick::solver {
 
-/// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with sum of p given. All
-/// quantities in one consistent set of units; u3 = K33 p.
+/// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with a given sum of p. One
+/// consistent set of units; u3 = K33 p.
 struct NormalProblem {
   const Eigen::ArrayXd& gap;  ///< undeformed gap h of each cell; infinite where the bodies cannot touch
   double total_pressure;      ///< load over cell area
@@ -21,7 +21,7 @@ struct NormalProblem {
 
 struct NormalOptions {
   double tolerance = 1e-10;     ///< on the complementarity gap
-  bool refine_approach = true;  ///< to the tolerance, at some applications more where it needs be
+  bool refine_approach = true;  ///< to the tolerance, by a few more applications if necessary
   long max_applications = 2000;
   Progress progress = {};  ///< on the finest grid
   OnCellsKnown on_cells_known = {};
@@ -39,12 +39,14 @@ struct NormalSolution {
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< on all grids
-  double part = 1.0;                 ///< of the cells that were looked at
+  double part = 1.0;                 ///< candidates for contact over all cells
 };
 
-/// Newton's method on the natural map p = max(0, p - rho (K p + h - approach)), from the coarsest grid up
-/// (natural_map_newton.hpp, nested_iteration.hpp). Stops when the complementarity gap and the load balance
-/// hold, not on change.
+/// 1. Nested grids, from the coarsest up (nested_iteration.hpp), or from a guess.
+/// 2. Candidates for contact cells, from the coarse grid's pressure and opening.
+/// 3. Newton's method on the natural map p = max(0, p - rho (K p + h - approach)) (natural_map_newton.hpp),
+///    until complementarity gap and load balance hold.
+/// 4. If another cell opens less than the candidates, more candidates, and again from 3.
 ///
 /// Throws std::invalid_argument for a load that is not positive or a gap that is nowhere finite or NaN.
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,

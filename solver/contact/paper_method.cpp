@@ -68,7 +68,7 @@ class PaperMethod {
     iteration_ = options_.max_iterations;
     return finish(
         Status::not_converged,
-        fmt::format("too many iterations: change {:.3g} of the sum of mu p after {}, asked for {:.3g}{}",
+        fmt::format("too many iterations: change {:.3g} of the sum of mu p after {}, tolerance {:.3g}{}",
                     change_, iteration_, options_.tolerance,
                     within_bounds() ? "" : ", and |q| is above mu p by more than that"));
   }
@@ -90,7 +90,7 @@ class PaperMethod {
     stick_t_square_ = stick_t_.square().sum();
   }
 
-  /// Whether A_S holds against torsion; a cell on the axis alone carries no moment and fixes no twist.
+  /// True if A_S can carry a moment; a single cell on the axis carries none and does not determine the twist.
   bool can_hold() const { return problem_.twist ? stick_.any() : stick_t_square_ > 0.0; }
 
   /// Step 2, Eqs. (14)-(16): the twist that fits the displacements best on A_S.
@@ -154,8 +154,8 @@ class PaperMethod {
     if (options_.progress && iteration_ % kProgressEvery == 0) options_.progress(iteration_, change_);
   }
 
-  /// Step 10 lifts tractions above the friction that step 9 has cut them to, and Eq. (26), a sum over all
-  /// cells, may not see the few where it does.
+  /// Step 10 may raise tractions above the bound that step 9 has enforced. Eq. (26), a sum over all cells,
+  /// may not detect it in a few cells.
   bool within_bounds() const {
     return (norms(q_) <= (1.0 + options_.tolerance) * problem_.friction_bound).all();
   }
@@ -164,7 +164,7 @@ class PaperMethod {
     return finish(Status::not_converged, fmt::format("{} in iteration {}: {}", what, iteration_, numbers));
   }
 
-  /// What is reported of a result is computed from its tractions afresh, not carried along.
+  /// The reported displacements are computed from the final tractions, not by the recurrence.
   TangentialSolution finish(Status status, const std::string& message) {
     op_.apply(q_, u_);
     if (problem_.twist || can_hold()) estimate_twist();

@@ -80,7 +80,7 @@ class ProjectedGradient {
     }
     iteration_ = options_.max_iterations;
     return finish(Status::not_converged,
-                  fmt::format("too many iterations: gap {:.3g} after {}, asked for {:.3g}", gap_, iteration_,
+                  fmt::format("too many iterations: gap {:.3g} after {}, tolerance {:.3g}", gap_, iteration_,
                               options_.tolerance));
   }
 

@@ -6,19 +6,22 @@
 
 namespace slipstick::solver {
 
-/// How far |v| is smoothed to sqrt(|v|^2 + s^2), for v of the size of 1.
+/// First and last s of the smoothing |v| -> sqrt(|v|^2 + s^2), for v of the order of 1.
 struct Smoothing {
   double first;
   double least;
 };
 
-/// Newton's method on a sum of lengths |v| of vectors that are linear in a few variables, smoothed less and
-/// less: s falls tenfold each time that the decrement has settled to a part of the smoothing error, which is
-/// at most s, or gains no more than rounding. Such sums are convex, and flat or kinked where Newton's method
-/// alone fails.
+/// Minimises a sum of lengths |v| of vectors that are linear in a few variables. The sum is convex, but has
+/// flat parts and kinks at which Newton's method fails, so that it is smoothed to sqrt(|v|^2 + s^2):
 ///
-/// evaluate(point, step, s) returns the Point that lies a step of the variables from a point, with the
-/// members `smoothed`, the sum, and its derivatives `gradient` and `hessian`; done(point, s) ends the search.
+/// 1. A Newton step on the smoothed sum, halved until the sum falls (Armijo).
+/// 2. If the Newton decrement is small against s, which bounds the smoothing error, or no step lowers the
+///    sum: s falls tenfold.
+/// 3. Again from 1, until done(point, s) or s is below the last one.
+///
+/// evaluate(point, step, s): the Point at a step of the variables from `point`, with the members `smoothed`,
+/// the sum, and its derivatives `gradient` and `hessian`.
 template <class Point, class Evaluate, class Done>
 Point minimise_smoothed(const Point& start, const Smoothing& smoothing, const Evaluate& evaluate,
                         const Done& done) {

@@ -19,27 +19,27 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 // Lengths are in cells from here on, and (i, j) is the centre of that cell.
 constexpr double kMinStickCells = 12.0;
 constexpr double kMarch = 0.125;    // step along a ray across the cells
-constexpr double kStaircase = 2.0;  // what the counted front may be off between two rays
-constexpr double kLateral = 3.5;    // cells up to here on both sides of a ray take part in its fit
+constexpr double kStaircase = 2.0;  // error of the counted front between two rays
+constexpr double kLateral = 3.5;    // the fit takes cells up to here on both sides of a ray
 constexpr double kWidestAngle = 0.4;
 constexpr double kFarthest = 24.0;  // cells further from the front than this take part in no fit
 constexpr double kLargestShift = 2.0;
-constexpr int kPasses = 4;  // each measures from the front that the last one has found
+constexpr int kPasses = 4;  // each measures distances from the last one's front
 constexpr double kBesideQuadrant =
     kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
 
-/// What part of the slip ring is fitted on a ray, from the front, and by which degree in the distance.
+/// The part of the slip ring next to the front that is fitted on a ray, and the degree in the distance.
 struct Window {
   double from;
   double to;
   int degree;
 };
 
-/// The mesh blurs the slip for some two cells beyond the front; in narrow rings these are dear. Towards the
-/// contact's edge the slip has another expansion. Chosen on the circular contact with 48 to 256 cells across
-/// and 0.1 to 0.97 of the limit moment, where each keeps the front within 0.02 cells (0.05 if its radius is
-/// but 10 cells). A straight line does for rings that are narrow against the front's own radius; one below 3
-/// cells holds too few of them.
+/// The mesh blurs the slip for about two cells beyond the front; narrow rings cannot spare two cells. Near
+/// the contact's edge the slip has another expansion. Chosen on the circular contact with 48 to 256 cells
+/// across and 0.1 to 0.97 of the limit moment, where each window keeps the front within 0.02 cells (0.05 for
+/// a radius of 10 cells). A straight line suffices for rings that are narrow against the front's radius; a
+/// ring of less than 3 cells holds too few samples.
 Window window(double ring_width, double front) {
   if (ring_width >= 24.0) return {2.5, std::min(20.0, 0.7 * ring_width), 4};
   if (ring_width >= 12.0) return {2.0, 0.7 * ring_width, 3};
@@ -48,17 +48,17 @@ Window window(double ring_width, double front) {
   return {0.0, 0.0, 1};
 }
 
-/// A slipping cell as a ray sees it: distances from the reference front,
-/// straightened, and from the ray, and |s|^(2/3).
+/// A slipping cell in a ray's coordinates: distance from the straightened reference front, distance from the
+/// ray, and |s|^(2/3).
 struct Sample {
   double along;
   double across;
   double psi;
 };
 
-/// Distance where a polynomial of the window's degree, with terms in y, x y and y^2 for what changes across
-/// the ray, is zero on the ray; NaN where the samples do not determine it or it does not rise there. By the
-/// normal equations, which are well conditioned in lengths over those of the window.
+/// Root on the ray of a polynomial of the window's degree in x, with terms in y, x y and y^2 across the ray;
+/// NaN if the samples do not determine it or it does not rise there. The normal equations are well
+/// conditioned in lengths over the window's.
 double fitted_root(const std::vector<Sample> &samples, const Window &depth) {
   constexpr int kMaxTerms = 8;
   using Terms = Eigen::Matrix<double, kMaxTerms, 1>;
@@ -95,8 +95,8 @@ double fitted_root(const std::vector<Sample> &samples, const Window &depth) {
   return middle + half * x;
 }
 
-/// Counting is never further off than this, in cells: an answer that differs by
-/// more rests on slip that began elsewhere, or is no root of the law.
+/// Largest error of counting, in cells: a fit that differs by more rests on slip that did not begin at the
+/// front.
 constexpr double kLargestCorrection = 0.5;
 
 /// A contact's cells: which press, slip and stick.
@@ -117,7 +117,7 @@ class FrontCells {
   double contact_cells() const { return static_cast<double>((bound_ > 0.0).count()); }
 
   double cell_area() const { return grid_.cell_area(); }
-  /// The radius of a circle of so many cells.
+  /// The radius of a circle of this area, in cells.
   double radius(double cells) const { return std::sqrt(cells * cell_area() / std::numbers::pi); }
 
   bool in_contact(Index i, Index j) const {
@@ -134,8 +134,8 @@ class FrontCells {
     }
   }
 
-  /// Whether both axes are mirrors of all fields, to the last bit, as in a
-  /// front that was solved as a quadrant: a quarter of the rays says all then.
+  /// True if both axes are mirrors of all fields, to the last bit, as after a solve on a quadrant: then a
+  /// quarter of the rays suffices.
   bool is_mirrored() const {
     const auto alike = [&](Index a, Index b) {
       return bound_[a] == bound_[b] && stick_[a] == stick_[b] && slip_square(a) == slip_square(b);
@@ -195,7 +195,7 @@ class Rays {
     });
     // No answer changes by a quarter turn.
     count_ = 4 * static_cast<Index>(std::ceil(0.25 * kTurn * std::sqrt(longest)));
-    // Up to there rays cross sticking cells alone: no point of a cell is further than 1 from its centre.
+    // Up to there rays cross only sticking cells: no point of a cell is further than 1 from its centre.
     start_ = std::max(0.0, std::floor(std::sqrt(shortest)) - 1.0);
     counted_.resize(count_);
     edge_.resize(count_);
@@ -210,7 +210,7 @@ class Rays {
   const ArrayXd &counted() const { return counted_; }
   const ArrayXd &edge() const { return edge_; }
 
-  /// The first ones, which show all the others by their images.
+  /// The first rays, whose mirror images are all the others.
   Index distinct() const { return mirrored_ ? count_ / 4 : count_; }
   /// The ray, and its mirror images where there are some.
   std::vector<Index> images(Index ray) const {
@@ -241,7 +241,7 @@ class Rays {
     return theta < 0.0 ? theta + kTurn : theta;
   }
 
-  /// Means over seven rays, which take the staircase off the counted front.
+  /// Means over seven rays, which smooth the staircase of the counted front.
   ArrayXd smoothed(const ArrayXd &r) const {
     constexpr Index kHalf = 3;
     ArrayXd mean = ArrayXd::Zero(count_);
@@ -287,7 +287,7 @@ class FrontFit {
  public:
   FrontFit(const FrontCells &cells, const Rays &rays) : rays_(rays) { collect_slipping_cells(cells); }
 
-  /// Whether each cell is on the side of the counted front that its state says.
+  /// True if each cell is on the side of the counted front that belongs to its state.
   bool star_shaped() const { return star_shaped_; }
 
   void run(const FrontCells &cells, StickFront &front) {
@@ -320,8 +320,7 @@ class FrontFit {
           kLargestCorrection * std::sqrt(cells.cell_area()))) {
       front.radius = front.counted_radius;
       front.why_counted =
-          "outside the front the slip does not grow as where "
-          "slip has begun there and gone on";
+          "outside the front the slip does not grow as it does if slip began at the front and continued";
     }
   }
 
@@ -334,7 +333,7 @@ class FrontFit {
     double reference;  ///< the reference front at this angle
   };
 
-  /// Those that some window may take, by angle. Cells far from the front need no angle.
+  /// The cells that a window may contain, sorted by angle. Cells far from the front are skipped.
   void collect_slipping_cells(const FrontCells &cells) {
     const double nearest_front = rays_.counted().minCoeff();
     const double farthest_front = rays_.counted().maxCoeff();
@@ -357,8 +356,8 @@ class FrontFit {
 
   Window ring(Index ray) const { return window(rays_.edge()[ray] - reference_[ray], reference_[ray]); }
 
-  /// Radii are scaled by the reference front, so that it becomes a circle: what
-  /// is left to fit across the ray is small on slender stick areas too.
+  /// Radii are scaled by the reference front, so that it becomes a circle and changes across the ray are
+  /// small, also on slender stick areas.
   std::vector<Sample> samples_near(Index ray) const {
     const double front = reference_[ray];
     const double half = std::min(kLateral / front, kWidestAngle);
@@ -382,7 +381,7 @@ class FrontFit {
   bool star_shaped_ = true;
 };
 
-/// Fits the front; or says why it is only counted.
+/// Fits the front, or returns the reason why it is only counted.
 std::string fit_front(const FrontCells &cells, double stick_cells, StickFront &front) {
   if (stick_cells == 0.0) return "nothing sticks";
   if (stick_cells == cells.contact_cells()) return "everything sticks";

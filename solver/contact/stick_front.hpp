@@ -7,22 +7,24 @@
 
 namespace slipstick::solver {
 
-/// Where stick ends, finer than by cells.
+/// The edge of the stick area, resolved within cells.
 struct StickFront {
   double radius = 0.0;          ///< of the circle with the stick area's area, in the grid's unit of length
   double counted_radius = 0.0;  ///< the same by counting cells
-  double fitted = 0.0;          ///< part of the front, 0 to 1, that was found within the cells
-  std::string why_counted;      ///< why not all of it was; empty if it was
+  double fitted = 0.0;          ///< fraction of the front, 0 to 1, that was resolved within cells
+  std::string why_counted;      ///< the reason if the fraction is below 1
 };
 
-/// Outside the front the slip grows like d^(3/2) with the distance d, so that |s|^(2/3) is smooth there and
-/// falls to zero at the front with a slope. On rays from the stick area's centroid, about as many as the
-/// front has cells, a polynomial in the distance (and, to second order, across the ray) is fitted to it by
-/// least squares in slipping cells, further from the front than the mesh blurs it, and its root taken. The
-/// area is half the integral of r^2 over the angle. Degree and window depend on how wide the slip ring is on
-/// that ray; where it is too narrow, or the fit has no root near by, the counted front stands in, as it does
-/// everywhere if the stick area is none that rays from its centroid can describe, or if the two differ by
-/// more than half a cell: the law holds where slip began at the front and has gone on since.
+/// If slip began at the front and has continued, it grows like d^(3/2) with the distance d from the front, so
+/// that |s|^(2/3) falls to zero there with a finite slope.
+///
+/// 1. Rays from the centroid of the stick area, about one per cell of the front.
+/// 2. On each ray, a polynomial in the distance (and, to second order, across the ray) is fitted to
+///    |s|^(2/3) by least squares in slipping cells, except next to the front, where the mesh blurs slip.
+///    Degree and window depend on the width of the slip ring.
+/// 3. r is the polynomial's root; if the ring is too narrow or no root is nearby, r of the counted front.
+/// 4. The area is half the integral of r^2 over the angle. The counted area stands if rays from the centroid
+///    do not describe the stick area, or the two radii differ by more than half a cell.
 ///
 /// friction_bound, stick: grid.cells() values; slip: twice as many. The radius is NaN where they are not
 /// finite (slip: in the contact). Throws std::invalid_argument for fields of another size and for a quadrant.

@@ -20,8 +20,8 @@ struct TangentialProblem {
   Eigen::ArrayXd initial_displacement;  ///< (u1, u2) by the change of pressure, Eq. (12); empty: none
   std::optional<double> moment;         ///< M_3 over the cell area; or else
   std::optional<double> twist;          ///< phi_3 itself is imposed
-  /// (F1, F2) over the cell area, balanced by translations; or else these are imposed. Neither: none, as
-  /// where a contact is its own image under half a turn and carries no force.
+  /// (F1, F2) over the cell area, balanced by translations; or else these are imposed. If both are empty
+  /// there are no translations: the contact is its own image under half a turn and carries no force.
   std::optional<std::array<double, 2>> force = {};
   std::optional<std::array<double, 2>> displacement = {};
   Eigen::ArrayXd start = {};   ///< tractions of the state before, 2*cells; empty: none
@@ -39,19 +39,19 @@ struct TangentialSolution {
   Eigen::ArrayXd stick;                  ///< 1 in A_S, 0 elsewhere
   double twist = 0.0;                    ///< phi_3
   std::array<double, 2> displacement{};  ///< delta_1, delta_2
-  double change = 0.0;                   ///< what the method's stopping test saw last
+  double change = 0.0;                   ///< the last value of the method's stopping test
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< of Coulomb's method, on all grids
-  double part = 1.0;                 ///< of the cells that it looked at
+  double part = 1.0;                 ///< contact cells over all cells
 };
 
 /// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p
 /// r.
 double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound);
 
-/// By what the loads that the problem imposes could be multiplied, and how the body would slide. Without
-/// translations that is about the origin, of a quadrant too.
+/// The limit load for the problem's imposed loads. Without translations the body turns about the origin, also
+/// for a quadrant.
 LimitLoad limit_of(const TangentialProblem& problem, const Grid& grid);
 
 /// Throws std::invalid_argument if neither or both of moment and twist are given, or both of force and

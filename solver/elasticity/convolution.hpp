@@ -10,13 +10,17 @@
 
 namespace slipstick::solver {
 
-/// Discrete convolution by FFT (Liu, Wang and Liu 2000): fields are padded with zeros to p1 >= 2 n1 - 1 by
-/// p2 >= 2 n2 - 1, the kernel wraps around, so the cyclic convolution equals the linear one on the n1 x n2
-/// cells.
+/// Discrete convolution by FFT (Liu, Wang and Liu 2000). Fields are padded with zeros to p1 >= 2 n1 - 1 by
+/// p2 >= 2 n2 - 1 and the kernel wraps around, so that the cyclic convolution equals the linear one on the
+/// n1 x n2 cells.
 ///
-/// Rows go forward; then each column goes forward, is multiplied by the kernel's spectrum and goes back while
-/// it is in cache; then rows go back. The kernel is even or odd in each coordinate, so its spectrum is real
-/// or imaginary and a quadrant of it is stored.
+/// 1. Rows of the tractions are transformed forward.
+/// 2. Each column is transformed forward, multiplied by the kernel's spectrum and transformed back, while it
+///    is in cache.
+/// 3. Rows of the displacements are transformed back.
+///
+/// The kernel is even or odd in each coordinate, so that its spectrum is real or imaginary, and a quadrant of
+/// it is stored.
 class Convolution final : public LinearOperator {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.

@@ -12,7 +12,7 @@ namespace slipstick::solver {
 
 namespace {
 
-/// The diagonal's mirror is of use to the tangential kernel alone.
+/// Only the tangential kernel uses the mirror at the diagonal.
 OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel,
                            std::span<double> memory = {}) {
   return {.threads = elasticity.threads,
@@ -30,19 +30,19 @@ std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const
 
 /// Doubles a cell of the padded grid, for each Part.
 using Held = std::array<double, 3>;
-/// What an operator by FFT holds, and what Newton's method holds beside it of the grid, and of the cells that
-/// it looks at, whatever the law. Counted on 256 x 256 cells, rounded up;
-/// convergence/solve/tests/memory_test.py measures them in processes.
+/// Memory of an operator by FFT, and of Newton's method in addition: for all cells of the grid, and for the
+/// contact cells. It does not depend on the law. Counted on 256 x 256 cells and rounded up;
+/// convergence/solve/tests/memory_test.py measures it in processes.
 struct HeldOf {
   Held op, newton, of_cells;
 };
 constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.75, 1.0, 1.0}, {3.0, 3.0, 3.0}};
 constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.7, 1.4, 1.4}, {5.9, 5.9, 5.9}};
 constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
-/// Cells. Shorter sides take as much memory as one of this many: lines are transformed in groups.
+/// Shorter sides take as much memory as this many cells, since lines are transformed in groups.
 constexpr Index kMinSide = 16;
-/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): those of the matrices of
-/// pressure and coupling, which are this part of the tractions'.
+/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): the matrices of pressure and
+/// coupling, which have this part of the size of the tractions' matrix.
 constexpr double kKeptBlocks = 8.0 * 0x1p20;
 constexpr double kPartOfKept = 0.5;
 
@@ -56,7 +56,7 @@ std::size_t place_of(const Elasticity& elasticity, const Grid& grid, const Block
   return static_cast<std::size_t>(part_of(grid, kernel, options_of(elasticity, kernel).diagonal));
 }
 
-/// This process's part of the bytes of so many doubles a padded cell.
+/// This rank's bytes, for a number of doubles per padded cell.
 double padded_bytes(double doubles, const Grid& grid) {
   const auto padded = [](Index cells) {
     return static_cast<double>(fast_length(2 * std::max(cells, kMinSide) - 1));

@@ -13,24 +13,23 @@ namespace slipstick::solver {
 
 struct GridOperators;
 
-/// How displacements follow from tractions on whatever grid a method asks for: the elastic law and the way to
-/// evaluate its operators.
+/// The elastic law and the way to evaluate it: makes operators and preconditioners for any grid.
 struct Elasticity {
   SharedLaw law;
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   bool diagonal = false;                   ///< see OperatorOptions; of the tangential operator
-  bool at_edge = false;                    ///< whether the contact may reach the grid's edge
+  bool at_edge = false;                    ///< true if the contact may reach the grid's edge
   std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random
   std::shared_ptr<SolveCache> cache = {};  ///< for operators that are needed again; empty: none
 
-  /// The cache; none under random rounding, where an operator made again is another one.
+  /// The cache; none under random rounding, where each operator draws its own errors.
   std::shared_ptr<SolveCache> usable_cache() const;
   /// A key of these displacements on a grid.
   CacheKey key(const char* what, const Grid& grid) const;
 
-  /// Memory on this rank, in bytes: of an operator, and of that, its preconditioner and Newton's workspaces.
-  /// part: of the grid's cells that Newton's method looks at.
+  /// Memory on this rank, in bytes: of an operator; of an operator, its preconditioner and Newton's
+  /// workspaces. part: contact cells over all cells.
   double operator_bytes(const Grid& grid, const BlockKernel& kernel) const;
   double newton_bytes(const Grid& grid, const BlockKernel& kernel, double part = 1.0) const;
 
@@ -47,10 +46,11 @@ struct GridOperators {
   std::unique_ptr<InverseSymbol> symbol;
 };
 
-/// Told which part of the finest grid's cells Newton's method looks at, before it begins there; it may throw.
+/// Called with contact cells over all cells of the finest grid before Newton's method starts there; it may
+/// throw, for lack of memory.
 using OnCellsKnown = std::function<void(double part)>;
 
-/// Applications on all grids, in those of the last, finest one: each weighs by its cells.
+/// Applications on all grids in units of the finest grid's: each is weighted by its cells.
 double finest_grid_applications(const std::vector<GridWork>& grids);
 
 }  // namespace slipstick::solver

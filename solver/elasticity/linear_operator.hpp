@@ -14,7 +14,7 @@
 
 namespace slipstick::solver {
 
-/// Which components couple which fields: outputs x inputs of them, row by row.
+/// The components of a block operator: outputs x inputs of them, row by row.
 struct BlockKernel {
   std::size_t outputs;
   std::size_t inputs;
@@ -29,8 +29,8 @@ BlockKernel tangential_kernel();
 BlockKernel coupling_kernel();
 BlockKernel shear_kernel();
 
-/// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
-/// this, so that the three ways to sum and all laws are interchangeable.
+/// The influence operator from tractions to displacements on one grid. Methods see elasticity only through
+/// this class, so that the three ways of summation and all laws are interchangeable.
 class LinearOperator {
  public:
   using Field = Eigen::ArrayXd;
@@ -39,14 +39,14 @@ class LinearOperator {
   LinearOperator(const LinearOperator&) = delete;
   LinearOperator& operator=(const LinearOperator&) = delete;
 
-  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may be the same, and not
-  /// overlap otherwise. Allocates nothing. Throws std::invalid_argument for other sizes.
+  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may be the same, but not
+  /// overlap in part. Allocates nothing. Throws std::invalid_argument for other sizes.
   void apply(std::span<const double> traction, std::span<double> displacement) {
     apply_own(traction, displacement);
     share_rows(grid_, displacement);
   }
 
-  /// In the grid's own rows alone, where alone it needs the tractions.
+  /// The same in this rank's rows; tractions are read only there.
   void apply_own(std::span<const double> traction, std::span<double> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
@@ -92,30 +92,30 @@ class LinearOperator {
   long applications_ = 0;
 };
 
-/// The part of a contact whose fields are kept: all of its grid; the quadrant x1, x2 > 0, whose mirror images
-/// the other three are; a square quadrant whose tractions are mirror images about its diagonal as well,
-/// q2(x1, x2) = -q1(x2, x1), so that q1 alone is read and u2 is written as the image of u1.
+/// The part of a contact whose fields are stored: the whole grid; the quadrant x1, x2 > 0, whose mirror
+/// images are the other three; a square quadrant with a mirror at the diagonal, q2(x1, x2) = -q1(x2, x1), so
+/// that only q1 is read, and u2 is the image of u1.
 enum class Part { whole, quadrant, diagonal };
 
-/// The part that a grid holds of a kernel's fields. Pressures are even in both coordinates; q1 is even in x1
-/// and odd in x2, q2 the reverse. diagonal: whether the tractions mirror about the diagonal. Throws
-/// std::invalid_argument where kernel or grid have no such mirrors.
+/// The part of a kernel's fields on a grid. Pressures are even in both coordinates; q1 is even in x1 and odd
+/// in x2, q2 odd in x1 and even in x2. diagonal: true if the diagonal is a mirror. Throws
+/// std::invalid_argument if kernel or grid have no such mirrors.
 Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal);
 
-/// What an operator and its preconditioner are made with, beside grid, kernel and law.
+/// Options of an operator and its preconditioner.
 struct OperatorOptions {
   int threads = 1;
   bool diagonal = false;          ///< see part_of()
-  bool at_edge = false;           ///< whether fields reach the edge of a whole grid
-  std::span<double> memory = {};  ///< that a preconditioner may overwrite while it is applied; not owned
+  bool at_edge = false;           ///< true if fields reach the edge of a whole grid
+  std::span<double> memory = {};  ///< scratch for the preconditioner's applications; not owned
 };
 
-/// The operator of the fields that part_of() says. Throws what that throws, and std::invalid_argument for
-/// another kind than dcfft on a part of a grid.
+/// The operator for the fields of part_of(). Throws as that, and std::invalid_argument for a kind other than
+/// dcfft on a part of a grid.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticLaw& law, const OperatorOptions& options = {});
 
-/// Bytes that all ranks together will send in one application in double precision by discrete convolution.
+/// Bytes that all ranks together send in one application by discrete convolution.
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);
 
 }  // namespace slipstick::solver

@@ -17,14 +17,17 @@ namespace slipstick::solver {
 ///     tangential:  as in torsion, q1 and u1 are even in x1 and odd in x2, q2 and u2 odd in x1 and even in
 ///     x2.
 ///
-/// Fields are padded to a quarter of Convolution's period and transformed by cosines and sines, in which the
-/// convolution is a product as well (Martucci, IEEE Transactions on Signal Processing 42, 1994): a quarter of
-/// Convolution's work, and half its memory, as that keeps no more than a quadrant of the kernel's transform
-/// either. The transforms of the kernel and of the fields are kept in blocks of the kLines columns that are
-/// transformed together, so that memory is read and written in order.
+/// 1. Rows, padded to half of Convolution's period, by cosine or sine transforms (half_sample_transform.hpp).
+/// 2. Columns in the same way, kLines of them together.
+/// 3. The product with the kernel's transform: for these transforms, too, convolution is a product (Martucci,
+///    IEEE Transactions on Signal Processing 42, 1994).
+/// 4. Columns and rows back.
 ///
-/// With `diagonal`, of a square quadrant of square cells, the fields are also mirror images about the
-/// diagonal, q2(x1, x2) = -q1(x2, x1): q1 alone is read and transformed, u2 is u1's image. Half the work.
+/// It takes a quarter of Convolution's work and half its memory. Transforms are stored in blocks of the
+/// kLines columns that are transformed together, so that memory is read and written in order.
+///
+/// With `diagonal`, for a square quadrant of square cells, q2(x1, x2) = -q1(x2, x1): only q1 is transformed,
+/// and u2 is the image of u1, for half the work.
 class MirroredConvolution final : public LinearOperator {
  public:
   /// Throws what part_of() throws for the grid of a quadrant.

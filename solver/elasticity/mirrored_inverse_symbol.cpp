@@ -28,7 +28,7 @@ PeriodicTransform::Shape plane_of(const Grid& grid, bool two_fields) {
           grid.ranks};
 }
 
-/// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.
+/// The frequencies f2 of a row of coefficients: k for cosines, then t - k for sines.
 std::vector<Index> frequencies(Index t, const IndexRange& columns) {
   std::vector<Index> result;
   for (Index k = columns.first; k < columns.last; ++k) result.push_back(k);
@@ -62,9 +62,10 @@ void restore(const double* __restrict row, Index n, double even, double odd, Ind
   if (n % 2 != 0) values[n - 1] = even * row[n / 2];
 }
 
-/// With a and b the Fourier transform at (k1, k2) and (t1 - k1, k2), w1 = exp(-i pi k1/(2 t1)) and w2
-/// likewise, A = w1 w2 a and B = conj(w1) w2 b are the sums over samples times exp(-i (theta2 + theta1)) and
-/// exp(-i (theta2 - theta1)), theta the arguments of the cosines. Written is twice
+/// With a and b the Fourier transform at (k1, k2) and (t1 - k1, k2), w1 = exp(-i pi k1/(2 t1)) and w2 =
+/// exp(-i pi k2/(2 t2)), A = w1 w2 a and B = conj(w1) w2 b are the sums over samples times
+/// exp(-i (theta2 + theta1)) and exp(-i (theta2 - theta1)), with theta the arguments of the cosines. The
+/// results are twice
 ///
 ///     cc = Re(A + B)/2,  cs = -Im(A + B)/2,  sc = Im(B - A)/2,  ss = Re(B - A)/2.
 template <typename Count>
@@ -283,8 +284,7 @@ void MirroredInverseSymbol::multiply_rows(std::array<Coefficients, 2>& fields, c
   mix_at(t1_ - k1, sines, x.sc, y.cs);
 }
 
-/// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1), so that all of q1's are stored
-/// first.
+/// A coefficient of q2 at (f1, f2) is minus q1's at (f2, f1), so that all of q1's are stored first.
 template <typename Count>
 void MirroredInverseSymbol::keep_spectrum(const Columns& columns, Count count) {
   const auto keep = [&](const Coefficients::Values& low, const Coefficients::Values& high, Index k1) {

@@ -8,7 +8,7 @@
 
 namespace slipstick::solver {
 
-/// cos and sin of pi k1/(2 t1), and those of pi k2/(2 t2) for some k2.
+/// cos and sin of pi k1/(2 t1), and of pi k2/(2 t2) for some k2.
 struct Twiddles {
   double c;
   double s;
@@ -41,8 +41,8 @@ class MirroredInverseSymbol final : public InverseSymbol {
   using Columns = PeriodicTransform::Columns;
   static constexpr Index kColumns = PeriodicTransform::kColumns;
 
-  /// Of reordered samples in some columns, by cosines (c) of the frequency k or sines (s), which are the
-  /// cosines of t - k, along x1 and x2.
+  /// Coefficients of reordered samples in some columns, by cosines (c) of the frequency k or sines (s), which
+  /// are the cosines of t - k, along x1 and x2.
   struct Coefficients {
     using Values = std::array<double, static_cast<std::size_t>(kColumns)>;
     Values cc, cs, sc, ss;
@@ -63,7 +63,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
   void multiply(const Columns& columns, Count count) const;
   template <typename Count>
   void multiply_rows(std::array<Coefficients, 2>& x, const Columns& columns, Count count, Index k1) const;
-  // Of a field with a mirror at the diagonal: forward into spectrum_, and back from there.
+  // For a mirror at the diagonal: forward into spectrum_, and back from there.
   template <typename Count>
   void keep_spectrum(const Columns& columns, Count count);
   template <typename Count>
@@ -82,7 +82,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
   SymbolTable table_;   ///< those frequencies, then t2 less each of them
   PeriodicTransform transform_;
   FftwBuffer spectrum_;  ///< symmetric fields only: t1 rows, frequencies k2, then t2 - k2
-  FftwBuffer twiddles_;  ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
+  FftwBuffer twiddles_;  ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then of pi k/(2 t2)
 };
 
 }  // namespace slipstick::solver

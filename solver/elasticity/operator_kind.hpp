@@ -6,9 +6,9 @@ namespace slipstick::solver {
 /// summation without a matrix (N^4 work, N^2 memory), or by a dense matrix (N^4 of both).
 enum class OperatorKind { dcfft, direct, dense };
 
-/// Which tractions the numbers of the cells stand for: constant over each cell; or smooth, each the traction
-/// at its cell's centre. Displacements at the centres are then right to the third order in a cell's size
-/// instead of the second, wherever the tractions are smooth.
+/// The tractions that the cells' values represent: constant over each cell; or smooth, each value the
+/// traction at its cell's centre. Displacements at the centres then have an error of third order in the cell
+/// size instead of second, wherever the tractions are smooth.
 enum class CellTraction { constant, smooth };
 
 }  // namespace slipstick::solver

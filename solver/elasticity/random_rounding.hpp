@@ -8,14 +8,14 @@
 
 namespace slipstick::solver {
 
-/// An operator that rounds at random, drawn from the seed: each displacement is off by up to an ulp of the
-/// largest, and after each application all that is computed, transforms, sums and the rest, is rounded either
-/// upward or downward, until the next. Digits of an answer that survive many seeds depend on no compiler,
-/// processor or order of sums (Parker 1997, Monte Carlo arithmetic; Vignes 2004, random rounding).
+/// An operator with random rounding, drawn from the seed: each displacement changes by up to an ulp of the
+/// largest one, and after each application the thread rounds either upward or downward until the next. Digits
+/// that agree for many seeds do not depend on compiler, processor or order of sums (Parker 1997, Monte Carlo
+/// arithmetic; Vignes 2004, random rounding).
 std::unique_ptr<LinearOperator> rounded_at_random(std::unique_ptr<LinearOperator> op,
                                                   const BlockKernel& kernel, std::uint64_t seed);
 
-/// Keeps how this thread rounds, or sets it, and restores in the end what it found.
+/// Restores this thread's rounding direction at the end; optionally sets another one first.
 class KeptRounding {
  public:
   KeptRounding() : found_(std::fegetround()) {}

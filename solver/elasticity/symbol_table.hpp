@@ -12,10 +12,9 @@ namespace slipstick::solver {
 enum class SymbolEntry : std::size_t { p11, p12, p22 };
 
 /// Inverses of a law's symbol on a periodic grid of even lengths, times a factor: rows f1 = 0..n1/2 of the
-/// entries in use. Its frequency f is xi = 2 pi f/(n h); the symbols are even or odd in f, and the last one
-/// is the Nyquist frequency. At zero frequency, where the symbol of a half-space vanishes, half of the
-/// smallest frequency stands in for |xi|. p12 is zero on the Nyquist frequencies, which stand for both signs
-/// of xi.
+/// entries in use, with xi = 2 pi f/(n h). The symbols are even or odd in f; the last frequency is Nyquist's.
+/// At zero frequency, where the inverse symbol of a half-space vanishes, |xi| is half of the smallest
+/// frequency. p12 is zero at Nyquist's frequency, where xi has both signs.
 class SymbolTable {
  public:
   /// entries: 1, p11 of the normal kernel; 2 or 3, the first of them of the tangential one. Each row holds

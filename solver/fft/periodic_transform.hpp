@@ -15,9 +15,8 @@ namespace slipstick::solver {
 /// zero: for convolution over a period. PaddedTransform is for linear convolution, where the period is twice
 /// the field in each direction.
 ///
-/// 1. Rows with samples: real to complex, one by one, from and to a thread's own memory (FFTW's plans in
-/// place
-///    take three times as long).
+/// 1. Rows with samples: real to complex, one by one, from a thread's own memory (FFTW plans in place three
+///    times as slowly).
 /// 2. On several ranks: a transposition, from each rank's own rows to its own columns.
 /// 3. Columns: a cache line of them at a time, forward, multiplied by the caller, and back.
 /// 4. The inverse of steps 2 and 1. The result is n1 n2 times the inverse.

@@ -103,8 +103,8 @@ JoinedRanks::JoinedRanks() {
   if (communicator_->number() == 1) {
     communicator_.reset();
     throw std::runtime_error(
-        "started on several ranks, each of which finds itself alone: mpirun is of another MPI "
-        "than this build's; start it with that one's");
+        "started on several ranks, but each finds only itself: this mpirun belongs to another MPI than "
+        "this build; use the mpirun of the build's MPI");
   }
   mallopt(M_MMAP_THRESHOLD, kOwnMemory);
   for (const char* name : kNumberVariables) unsetenv(name);  // programs that this one starts are no ranks

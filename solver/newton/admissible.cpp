@@ -117,8 +117,7 @@ void FrictionDiscs::project(ArrayXd& q) const {
 using PairOfVectors = std::array<Pair, 2>;
 
 /// The sums of LoadsAlong on the unit motions (1, 0), (0, 1) and (-x2, x1), two cells at a time, and their
-/// derivatives along so many directions: 0 stands for the unit motions themselves, along which these are
-/// symmetric.
+/// derivatives along Directions directions; 0: along the unit motions themselves, where they are symmetric.
 template <std::size_t Directions>
 struct UnitLoadsOfPairs {
   std::array<Pair, 3> load{};

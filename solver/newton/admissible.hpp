@@ -10,36 +10,34 @@
 #include "solver/newton/load_balance.hpp"
 #include "solver/newton/tangent_space.hpp"
 
-/// What tractions a cell may carry: the sets over which the contact's energy is minimised. Each knows its
-/// projection, and the tangent space of the natural map q = P(q - rho s).
+/// The sets of admissible tractions, over which the contact's energy is minimised, with their projection P
+/// and the tangent space of the natural map q = P(q - rho s).
 namespace slipstick::solver {
 
-/// What rounding may do to displacements, relative: units of rounding of transforms, and of loads, which are
-/// balanced to 1e-14.
+/// Relative rounding error of displacements: transforms round by some eps, loads are balanced to 1e-14.
 inline constexpr double kGapUnits = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Whether a gap is within a tolerance, or within its rounding where that is larger. NaN is not.
+/// True if a gap is within a tolerance, or within its rounding if that is larger; false for NaN.
 inline bool is_certified(double gap, double rounding, double tolerance) {
   return gap <= tolerance || (gap <= rounding && std::isfinite(rounding));
 }
 
-/// What the optimiser asks of a product of small convex sets, one a cell: how to bring values into it, how
-/// far they are from the least energy, and what is free to move where the natural map has put each cell.
-/// Besides that, for LoadBalance, the loads of its projection along given fields: loads_along(y, w, x, c).
+/// A product of small convex sets, one for each cell: projection, duality gap and linearised natural map. For
+/// LoadBalance it also has the loads of its projection along given fields, loads_along(y, w, x, c).
 template <class Set>
 concept AdmissibleSet = requires(const Set& set, const Eigen::ArrayXd& s, Eigen::ArrayXd& q, double rho,
                                  const std::array<double, 2>& mean, TangentSpace& space) {
   { Set::kComponents } -> std::convertible_to<Index>;  // values a cell: 1 or 2
   { set.cells() } -> std::same_as<Index>;
-  { set.sweep() } -> std::same_as<const Sweep&>;                  // over those whose set is not zero alone
+  { set.sweep() } -> std::same_as<const Sweep&>;                  // contact cells: sets other than {0}
   {set.project(q)};                                               // the nearest admissible q
   { set.gap(q, s) } -> std::same_as<double>;                      // bounds the energy above its least
-  { set.gap_rounding(s, s, &s) } -> std::same_as<double>;         // what rounding may do to the gap
+  { set.gap_rounding(s, s, &s) } -> std::same_as<double>;         // rounding error of the gap
   { set.linearise(q, rho, mean, space) } -> std::same_as<Index>;  // cells that changed their state
-  {set.add_jump(s, s, q)};                                        // onto the face that the natural map says
+  {set.add_jump(s, s, q)};                                        // onto the natural map's face of the set
 };
 
-/// Pressures that do not pull: p_i >= 0 in some cells, p_i = 0 elsewhere.
+/// p_i >= 0 in the contact cells, p_i = 0 elsewhere.
 class PositivePressures {
  public:
   static constexpr Index kComponents = 1;
@@ -64,15 +62,15 @@ class PositivePressures {
   /// the surfaces are closest. opening: K p + h, less any approach.
   double gap(const Eigen::ArrayXd& p, const Eigen::ArrayXd& opening) const;
 
-  /// Pressures are solved for where their gap is far above its rounding.
+  /// Zero: tolerances of pressures are far above the rounding of their gap.
   static double gap_rounding(const Eigen::ArrayXd&, const Eigen::ArrayXd&, const Eigen::ArrayXd*) {
     return 0.0;
   }
 
-  /// State of each cell by the natural map at z = p - rho s.
+  /// The state of each cell by the natural map at z = p - rho s: free where z > 0.
   Index linearise(const Eigen::ArrayXd& z, double, const std::array<double, 2>&, TangentSpace& space) const;
 
-  /// step += what brings each cell onto the face of its set on which the natural map puts it.
+  /// step += the jump of each cell onto the face of its set that the natural map selects.
   void add_jump(const Eigen::ArrayXd& z, const Eigen::ArrayXd& p, Eigen::ArrayXd& step) const;
 
  private:
@@ -103,18 +101,16 @@ class FrictionDiscs {
   /// Sum of s.q + mu p |s|; see Certificate.
   double gap(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip) const;
 
-  /// Sum of the most that -s.d - k|d|^2/2 can be for |q + d| <= mu p, k > 0: see Certificate. With k = 0 it
-  /// is the gap.
+  /// Sum over cells of max over |q + d| <= mu p of -s.d - k |d|^2/2: see Certificate. k = 0 gives the gap.
   double energy_error(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip, double k) const;
 
-  /// What rounding of slips and tractions does to the gap: each slip is a difference of displacements, each
-  /// product one of numbers that are right to some units of rounding. displacement: K q; reference: what slip
-  /// holds besides of displacements, ConvexProgram::g, or null.
+  /// Rounding error of the gap: each slip is a difference of displacements, which are known to kGapUnits.
+  /// displacement: K q; reference: the other displacement in the slip, ConvexProgram::g, or null.
   double gap_rounding(const Eigen::ArrayXd& slip, const Eigen::ArrayXd& displacement,
                       const Eigen::ArrayXd* reference = nullptr) const;
 
-  /// Stick where |z| <= mu p. Elsewhere q turns along its circle, against the stiffness (|z| - mu p)/(rho mu
-  /// p), which is |s|/(mu p) where slip is opposed to traction already.
+  /// Stick where |z| <= mu p. Elsewhere q moves along its circle, against the stiffness (|z| - mu p)/(rho mu
+  /// p), which equals |s|/(mu p) once slip opposes traction.
   Index linearise(const Eigen::ArrayXd& z, double rho, const std::array<double, 2>& mean,
                   TangentSpace& space) const;
 

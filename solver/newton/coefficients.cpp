@@ -13,7 +13,7 @@ namespace {
 using SmallRows =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxConditions, kMaxConditions>;
 
-/// What GSL's functions take, on a matrix or vector of Eigen.
+/// GSL's views of a matrix or vector of Eigen.
 struct GslMatrix {
   explicit GslMatrix(SmallRows& of)
       : view(gsl_matrix_view_array(of.data(), static_cast<std::size_t>(of.rows()),
@@ -44,8 +44,7 @@ FullQr full_qr(const CoefficientMatrix& matrix) {
 
 }  // namespace
 
-// By A P = Q diag(R, 0) Z, for which GSL wants no fewer rows than columns: rows of zeros make up for those
-// missing.
+// By A P = Q diag(R, 0) Z. GSL requires at least as many rows as columns, so rows of zeros are added.
 Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right) {
   const Eigen::Index n = matrix.cols();
   Coefficients unknown = Coefficients::Constant(n, std::numeric_limits<double>::quiet_NaN());

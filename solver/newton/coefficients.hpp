@@ -6,7 +6,7 @@ namespace slipstick::solver {
 
 using Eigen::Index;
 
-/// The rigid motions of a body on a surface, two translations and a turn, and one unknown more.
+/// The rigid motions of a body on a surface (two translations and a rotation), and one more unknown.
 inline constexpr int kMaxConditions = 4;
 
 /// One value a condition, and a matrix of them; nothing is allocated.
@@ -14,8 +14,8 @@ using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConditions,
 using CoefficientMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConditions, kMaxConditions>;
 
-/// The x of least length among those that solve matrix x = right, or come closest: of motions that do the
-/// same to the contact, as of a single cell, the least.
+/// The x of least length among the least-squares solutions of matrix x = right. A single cell, for example,
+/// does not determine its motion.
 Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right);
 
 /// matrix = q r with orthonormal columns q and a triangle r, for no more columns than rows.

@@ -50,9 +50,9 @@ inline float to_tangent(double value) {
   return static_cast<float>(std::copysign(static_cast<float>(std::abs(value)), value));
 }
 
-/// The system's matrix, symmetric and positive definite where the iteration moves: fields are zero elsewhere,
-/// and only these cells of them are written. y = A x in two parts; the second shares a sweep over the cells
-/// with what is done after it: transform(x, y), and store(first, last, x, y).
+/// The system's matrix A, symmetric and positive definite on the cells of the iteration. Fields are zero in
+/// other cells, which are not written. y = A x in two parts: transform(x, y), and store(first, last, x, y),
+/// which shares a sweep over the cells with the dot products that follow.
 template <class Map>
 concept LinearMap = requires(Map& map, Index cell, const Eigen::ArrayXd& x, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
@@ -60,10 +60,9 @@ concept LinearMap = requires(Map& map, Index cell, const Eigen::ArrayXd& x, Eige
   map.store(cell, cell, x, y);
 };
 
-/// y = M r likewise, in three parts, so that the first and the last share a sweep over the cells with what
-/// is done before and after: load(first, last, r, z) for all cells of a z that is zero elsewhere,
-/// transform(z), and store(first, last, r, z, y), where y may be z. project(first, last, y) leaves of y what
-/// lies in M's range; r lies there.
+/// The preconditioner, y = M r in three parts: load(first, last, r, z) for all cells of a z that is zero
+/// elsewhere, transform(z), and store(first, last, r, z, y), where y may be z. load and store share sweeps
+/// with the operations before and after. project(first, last, y) projects y onto M's range, in which r lies.
 template <class Map>
 concept SplitMap = requires(Map& map, Index cell, const Eigen::ArrayXd& r, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
@@ -105,14 +104,13 @@ struct CgProducts {
   }
 };
 
-/// Conditions c_k.x = 0, or given values, that an iteration keeps throughout. Each has a tangent w_k, about
-/// the preconditioned c_k: with W = (w_1 ...) and C alike, residuals are kept at r - C (W^T C)^-1 W^T r and
-/// directions at y - W (C^T W)^-1 C^T y. Whatever the tangents are, both are projections, one the other's
-/// transpose, so that the preconditioner between them stays symmetric; with w_k = M c_k no direction is
-/// changed (Gould, Hribar and Nocedal 2001). So tangents may be those of a problem near by, and in single
-/// precision.
+/// Conditions c_k.x = const, which an iteration keeps. Each has a tangent w_k, about M c_k: with W = (w_1
+/// ...) and C = (c_1 ...), residuals are projected to r - C (W^T C)^-1 W^T r and directions to y - W (C^T
+/// W)^-1 C^T y. For any tangents these are projections and each other's transpose, so that the preconditioner
+/// between them stays symmetric; with w_k = M c_k no direction is changed (Gould, Hribar and Nocedal 2001).
+/// So the tangents of a nearby problem, in single precision, suffice.
 ///
-/// Condition: what MotionField can do with values of one row. Conditions are not owned.
+/// Condition: a type with MotionField's dot() and add_to(). Conditions are not owned.
 template <class Condition>
 class CgConstraints {
  public:
@@ -123,8 +121,8 @@ class CgConstraints {
   /// storage: a field for each condition there will be; not owned.
   explicit CgConstraints(std::span<CgTangent> storage) : tangents_(storage) {}
 
-  /// Tangents that are the preconditioned conditions. False if these are not independent where the
-  /// preconditioner lets fields move; then they must not be used. y, z: overwritten.
+  /// Tangents w_k = M c_k. False if they are linearly dependent; then they must not be used. y, z:
+  /// overwritten.
   template <SplitMap Preconditioner>
   bool prepare(Preconditioner& preconditioner, Conditions conditions, Eigen::ArrayXd& y, Eigen::ArrayXd& z) {
     count_ = conditions.size();
@@ -162,7 +160,7 @@ class CgConstraints {
     return factorise(preconditioner, z);
   }
 
-  /// The same tangents in another range of the preconditioner. all: the cells that carry anything. z:
+  /// The same tangents projected onto the range of another preconditioner. all: the contact cells. z:
   /// overwritten. False as above.
   template <SplitMap Preconditioner>
   bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, Eigen::ArrayXd& z) {
@@ -201,11 +199,11 @@ class CgConstraints {
   Coefficients first(const CgProducts::OfEach& products) const {
     return Eigen::Map<const Eigen::VectorXd>(products.data(), count());
   }
-  /// The parts of conditions that have to be taken out of a residual with these products with the tangents.
+  /// (W^T C)^-1 with_tangents: the multiples of c_k to subtract from a residual.
   Coefficients multipliers(const Coefficients& with_tangents) const {
     return count_ == 0 ? Coefficients() : Coefficients(of_conditions_ * with_tangents);
   }
-  /// The parts of tangents that have to be taken out of a direction with these products with the conditions.
+  /// (C^T W)^-1 with_conditions: the multiples of w_k to subtract from a direction.
   Coefficients parts(const Coefficients& with_conditions) const {
     return count_ == 0 ? Coefficients() : Coefficients(of_tangents_ * with_conditions);
   }
@@ -242,13 +240,13 @@ class CgConstraints {
   std::span<const CgTangent> tangents() const { return tangents_.first(count_); }
 
  private:
-  /// Conditions depend on each other below this part that is independent: a single stick cell cannot say
-  /// whether it is turned or pushed.
+  /// Conditions count as dependent if the part of one that is orthogonal to the others is below this: for a
+  /// single stick cell rotation and translation are the same.
   static constexpr double kDependent = 1e-12;
 
   static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
   Index count() const { return static_cast<Index>(count_); }
-  /// work(where each tangent has its values from the first one on), compiled for each number of them.
+  /// work(pointers to the tangents' values from `first` on), compiled for each number of tangents.
   template <std::size_t K = kMaxConditions, typename Work>
   void with_tangents(Index first, const Work& work) const {
     if (count_ < K) {
@@ -264,8 +262,8 @@ class CgConstraints {
                              const Work& work) {
     for (Index start = first; start < field.size(); start += cells.size()) work(start, last - first);
   }
-  /// (C^T W)^-1 and its transpose, with tangents as far as they lie in the preconditioner's range, of which
-  /// rounding to single precision takes them out; false if there is none.
+  /// (C^T W)^-1 and its transpose, with the tangents projected onto the preconditioner's range, which
+  /// rounding to single precision has left; false if the inverse does not exist.
   template <class Preconditioner>
   bool factorise(const Preconditioner& preconditioner, Eigen::ArrayXd& z) {
     const Sweep& cells = preconditioner.cells();
@@ -291,7 +289,7 @@ class CgConstraints {
   CoefficientMatrix of_tangents_, of_conditions_;
 };
 
-/// Preconditioned conjugate gradients, see projected_cg(): what its iterations hand on. Nothing is owned.
+/// The state of projected_cg() between its iterations. It owns no field.
 template <LinearMap Map, SplitMap Preconditioner, class Condition>
 class ProjectedCg {
  public:
@@ -318,7 +316,7 @@ class ProjectedCg {
       }
       ++summary.iterations;
       if (!advance(square, summary)) return summary;
-      // The residual that is left is not measured where no reduction is asked for.
+      // With reduction 0 the last residual need not be preconditioned.
       if (options.reduction == 0.0 && summary.iterations == options.max_iterations) {
         summary.status = CgStatus::iterations;
         break;
@@ -352,7 +350,6 @@ class ProjectedCg {
     return square;
   }
 
-  /// Where there are cells in which the iteration does not move.
   void clear_elsewhere(Eigen::ArrayXd& y) const {
     if (cells_.count() < cells_.size()) clear(cells_, y);
   }
@@ -364,8 +361,7 @@ class ProjectedCg {
     preconditioner_.load(first, last, r_, y_);
   }
 
-  /// y = r preconditioned, the parts of tangents that have to be taken out of it, and the product of r with
-  /// what that leaves.
+  /// y = M r and the multiples of tangents to subtract from it; returns r.y after that.
   double precondition() {
     preconditioner_.transform(y_);
     const auto products = cells_.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
@@ -430,10 +426,16 @@ class ProjectedCg {
   Coefficients left_;   ///< products of the tangents with the residual: rounding, which must not grow
 };
 
-/// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x
-/// has them at the start. r: the residual of x, its start; overwritten by what is left under the multipliers
-/// that are found. Stops when r has fallen by `reduction`. Each iteration applies both maps once and sweeps
-/// over the cells four times, twice of them within the maps. Allocates nothing.
+/// Preconditioned conjugate gradients for A x = b - sum of multiplier_k c_k, where c_k.x keeps its first
+/// value.
+///
+/// 1. r = b - A x, projected; y = M r, projected; d = y.
+/// 2. x += a d, r -= a A d with a = r.y / d.A d; a curvature d.A d <= 0 ends the iteration.
+/// 3. r is projected, which adds to the multipliers; y = M r, projected.
+/// 4. d = y + (r.y / last r.y) d; again from 2 until sqrt(r.y) has fallen by `reduction`.
+///
+/// r: the residual of the first x; overwritten by the last residual. Each iteration applies both maps once
+/// and sweeps over the cells four times, twice within the maps. Allocates nothing.
 template <LinearMap Map, SplitMap Preconditioner, class Condition>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
                        Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work,

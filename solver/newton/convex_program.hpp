@@ -1,29 +1,29 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "solver/newton/load_balance.hpp"
 
 namespace slipstick::solver {
 
-/// minimise q.Kq/2 + g.q - sum of multiplier_k c_k.q over the admissible q: with c_k.q = load_k for each
-/// condition that is imposed, which finds its multiplier, and with a given multiplier for the others. g, of
-/// as many values as q, and motions are not owned. Values [first, last) are of one row.
+/// minimise q.Kq/2 + g.q - sum of multiplier_k c_k.q over the admissible q. Each imposed condition has a
+/// load, c_k.q = load_k, which determines its multiplier; each given one has its multiplier. g, of as many
+/// values as q, and motions are not owned. Values [first, last) are of one row.
 struct ConvexProgram {
   const Eigen::ArrayXd* g = nullptr;  ///< null: zero
-  std::vector<Condition> imposed;     ///< at most kMaxConditions, with those that follow
+  std::vector<Condition> imposed;     ///< with `given` at most kMaxConditions
   struct Given {
     const MotionField* c;
     double multiplier;
   };
   std::vector<Given> given = {};
-  /// An energy of the states before, whose errors this one inherits: where rounding keeps the gap from the
-  /// tolerance over q.Kq/2, over this one will do.
+  /// An energy of earlier states, whose errors this one inherits: if rounding keeps the gap over q.Kq/2 from
+  /// the tolerance, the gap over this energy suffices.
   double energy_before = 0.0;
-  /// Gives a field the symmetry that the answer has, which raises no energy, for that is convex; empty: none.
-  std::function<void(Eigen::ArrayXd& q)> symmetrise = {};
+  /// True if the answer turns into itself under half a turn: iterates are projected onto that symmetry, which
+  /// cannot raise the convex energy.
+  bool turns_into_itself = false;
 
   /// The part of the values [first, last) in the energy of q with the displacement u = K q; the imposed
   /// conditions' part, which is constant, left out.

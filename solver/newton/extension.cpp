@@ -12,19 +12,19 @@ constexpr std::array<double, 2> kNear{0.5, 0.35};
 /// Cells of a block along each axis, and the part that cells in it count for: the square of the distance.
 constexpr Index kSide = 4;
 constexpr double kFar = 1.0 / 16.0;
-/// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
+/// Added to the sum of weights, so that the continuation fades where few neighbours are free.
 constexpr double kFade = 1.0;
-/// Ranks' rows end with those of blocks of blocks.
+/// Rows of a block of blocks; the rows of a rank are whole blocks of blocks.
 constexpr Index kCoarsest = kSide * kSide;
 static_assert(kRowsOfBand % kCoarsest == 0);
-/// On shorter grids hardly a cell is out of reach: all are mixed, which costs less than to find which are.
+/// On shorter grids nearly all cells are within reach, and all count as mixed without a search.
 constexpr Index kAllMixed = 4 * kCoarsest;
 
 using Row = Eigen::Map<const Eigen::ArrayXd>;
 
 Index blocks_of(Index n) { return (n + kSide - 1) / kSide; }
 
-/// Adds the sums of so many cells over blocks, which begin with one.
+/// Adds cells, from the first one of a block on, to the sums of their blocks.
 void add_to_blocks(const Row& cells, double* sums) {
   const Index whole = cells.size() / kSide * kSide;
   for (Index j = 0; j < whole; j += kSide) sums[j / kSide] += cells.segment<kSide>(j).sum();
@@ -89,7 +89,7 @@ void Extension::fill_blocks(const double* in, Index component) {
     add_to_blocks(Row(sums + row * fine.n2, fine.n2), above + row / kSide * coarse.n2);
 }
 
-/// To sums of so many cells of a row, from one that begins a block, what reaches their blocks.
+/// Adds the means of their blocks to the sums of `count` cells of a row, from the first one of a block on.
 void Extension::add_means(const Level& blocks, Index component, Index row, Index column, Index count,
                           Line& sums) {
   const double* const means =
@@ -99,7 +99,7 @@ void Extension::add_means(const Level& blocks, Index component, Index row, Index
   if (whole < count) sums.segment(whole, count - whole) += means[whole / kSide];
 }
 
-/// What blocks give to those near by.
+/// The weighted sums of nearby blocks, first for the coarse level.
 void Extension::spread_blocks(Index component) {
   const auto spread_row = [&](Level& level, const Level* above, Index row) {
     const Index from = component * level.n1 * level.n2;
@@ -118,8 +118,8 @@ void Extension::spread_blocks(Index component) {
   });
 }
 
-/// take(first, count, sums) for cells of mixed_: the sums over what is near, of each component of a field,
-/// which is zero beyond the grid. Values beyond mixed_ are not read, or zero.
+/// take(first, count, sums) for the cells of mixed_, with the weighted sums of each component over nearby
+/// cells. The field is zero outside the grid, and is not read, or zero, outside mixed_.
 template <std::size_t components, typename Take>
 void Extension::spread(const Field& in, const Take& take) {
   for (std::size_t c = 0; c < components; ++c) {
@@ -143,8 +143,7 @@ void Extension::spread(const Field& in, const Take& take) {
   });
 }
 
-/// Finds the coarsest blocks that something free reaches, and that something reaches which is not, or not
-/// wholly, free.
+/// mixed_: the coarsest blocks within reach of a free cell and of a cell that is not, or not wholly, free.
 template <typename IsFree>
 void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
   if (std::max(grid_.n1, grid_.n2) <= kAllMixed) return;
@@ -166,8 +165,8 @@ void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
   });
 }
 
-/// free_part(cell): how much of a cell's vector is free. weights(cell, near): of the sums, near: that of free
-/// parts.
+/// free_part(cell): the matrix of the free part of a cell's vector. weights(cell, near): the matrix that
+/// multiplies sums at a cell, with near the sum of free parts nearby.
 template <typename FreePart, typename Weights>
 void Extension::prepare_with(const FreePart& free_part, const Weights& weights) {
   const Index n = grid_.cells();
@@ -246,7 +245,7 @@ void Extension::prepare(const TangentSpace& space, const Packing& packing) {
       });
 }
 
-/// Multiplies the values of so many cells by their weights.
+/// Multiplies the values of `count` cells by their weights.
 template <std::size_t components>
 void Extension::multiply(Index first, Index count, std::array<Line, components>& values) const {
   const auto weight = [&](Index entry) {
@@ -303,7 +302,8 @@ void Extension::extend(Field& y) {
 
 void Extension::collect(Field& y) { y.size() == grid_.cells() ? collect_all<1>(y) : collect_all<2>(y); }
 
-void Extension::hand_on(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves) {
+void Extension::redistribute(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays,
+                             Field& leaves) {
   const Sweep& cells = packing.cells();
   clear(cells, stays);
   clear(cells, leaves);

@@ -11,16 +11,20 @@ namespace slipstick::solver {
 
 struct TangentSpace;
 
-/// Continues a field smoothly from the cells that are free into those beside them, and its adjoint.
+/// A smooth continuation E of fields from the free cells to their neighbours, and its adjoint E^T.
 ///
-/// With S the operator's inverse on the whole plane, the inverse on the free cells alone is the least of E^T
-/// S E over all E that leave a field as it is there. E = 0 elsewhere, as a projector has it, cuts residuals
-/// off at the edges of the free cells and answers them several times too strongly. On a half-plane the best
-/// E is a mean with weights that fall as the square of the distance. Here the mean is over a few neighbours,
-/// and over a few of blocks of cells, and of blocks of these.
+/// With S the inverse of the operator on the whole plane, the inverse on the free cells is the least E^T S E
+/// over all E that keep the field there. E = 0 elsewhere, a plain projector, cuts residuals off at the edges
+/// of the free cells, and the preconditioned residual is several times too large. On a half-plane the best E
+/// is a mean with weights that fall as the square of the distance. Here:
 ///
-/// A vector that slips is free along a line. Across it is continued into as beyond the contact, and along it
-/// by as much as its stiffness holds it fast.
+/// 1. prepare(): the matrix of weights of each cell, from the free parts of its neighbours.
+/// 2. extend(): each cell takes its weights times a sum over few neighbours, over few blocks of cells, and
+///    over few blocks of blocks.
+/// 3. collect(): the same sums of the weighted values, added to the free cells.
+///
+/// A slipping vector is free along a line. Across the line it is continued as outside the contact, along it
+/// in proportion to its stiffness.
 class Extension {
  public:
   using Field = Eigen::ArrayXd;
@@ -28,28 +32,28 @@ class Extension {
   /// For fields of one or two components on a grid.
   Extension(const Grid& grid, Index components);
 
-  /// What is free, once its preconditioner is known. Fields that are given here need be known in the grid's
-  /// own rows alone; the rows beside them are filled in. packing: of the space.
+  /// From a space whose preconditioner is set; packing: the space's. Fields of the functions here need be
+  /// known only in this rank's rows; adjacent rows are exchanged.
   void prepare(const TangentSpace& space, const Packing& packing);
   /// free: 1 in the cells that are, 0 elsewhere. Components are continued alike.
   void prepare(const Field& free);
-  /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
+  /// Adds to y, which is zero where no cell is free, its continuation. Allocates nothing.
   void extend(Field& y);
-  /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
+  /// The adjoint: adds to y in the free cells. Allocates nothing.
   void collect(Field& y);
 
-  /// Pressures below zero, and those of cells that are not free, go to the free cells beside them, by the
-  /// adjoint: it is close to what these answer once the others carry nothing. Clipping negative pressures
-  /// without handing them on would open the neighbourhood too far, and the next state would hold too few
-  /// cells. packing: of all of these fields. Overwrites the last two, and what prepare() left.
-  void hand_on(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
+  /// Moves negative pressures, and pressures of cells that are not free, to nearby free cells by the adjoint,
+  /// which approximates the elastic response to their removal. Clipping them would open the neighbourhood too
+  /// far, and the next active set would be too small. packing: of all these fields. stays, leaves:
+  /// overwritten. prepare() is due before the next extend().
+  void redistribute(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
  private:
   static constexpr Index kReach = 2;
   /// Cells of a row that are summed at once.
   static constexpr Index kChunk = 256;
   using Line = Eigen::Array<double, kChunk + 2 * kReach, 1>;
-  /// The blocks of a field's cells, each with the field's sum there, and what reaches it from blocks near by.
+  /// Blocks of cells, the sum of a field over each, and the weighted sum over nearby blocks.
   struct Level {
     Index n1, n2;
     Field sums, means;

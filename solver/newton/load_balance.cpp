@@ -17,8 +17,8 @@ constexpr double kMinDamping = 1e-12;
 constexpr double kMoreDamping = 100.0;
 /// The longest step, over the size of the field.
 constexpr double kMaxStride = 2.0;
-/// A step is good that takes a twentieth off what is missing, or brings this part of the decrease that its
-/// slope promises. Next to the limit Newton's steps take off a quarter, and the decrease is lost in rounding.
+/// A step is accepted if it reduces the imbalance by a twentieth, or the potential by this part of the linear
+/// prediction. Near the limit load Newton steps reduce by a quarter only, and rounding hides the decrease.
 constexpr double kGoodReduction = 0.95;
 constexpr double kArmijo = 1e-4;
 
@@ -129,8 +129,8 @@ bool LoadBalance<Set>::solve_one(const Eigen::ArrayXd& y, const Direction& w, do
   return false;
 }
 
-/// The size that the rounding of a load goes with: its own, or that of what cells carry against each other
-/// (by Cauchy's inequality no less than the sum of |c_k.P|).
+/// The scale of a load's rounding: |load|, or the cells' contributions of both signs, whose sum |c_k.P| is
+/// bounded by Cauchy's inequality.
 template <class Set>
 template <int M>
 double LoadBalance<Set>::known_to(const LoadsAlong<M>& at, int k) const {
@@ -151,9 +151,9 @@ double LoadBalance<Set>::imbalance(const LoadsAlong<M>& at) const {
   return worst;
 }
 
-/// Newton's method. Far out, where the load hardly changes with x, its steps overshoot: they are kept to
-/// the size of the field itself, and the matrix takes up as much of the majorant as it needs. With all of
-/// it a step always descends.
+/// Newton's method with a line search. Far out, where the load hardly changes with x, steps overshoot: they
+/// are limited to the size of the field, and a part of the majorant is added to the matrix, if necessary all
+/// of it, with which a step always descends.
 template <class Set>
 template <int M, typename Direction>
 bool LoadBalance<Set>::solve_several(const Eigen::ArrayXd& y, std::span<const Direction* const> w,

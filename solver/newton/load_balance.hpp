@@ -29,34 +29,35 @@ struct LoadsAlong {
   }
 };
 
-/// A linear condition on a field: c.q = load, over the cells whose set is not zero alone. c is not owned.
+/// A linear condition on a field: c.q = load, over the contact cells. c is not owned.
 struct Condition {
   const MotionField* c;
   double load;
 };
 
-/// Linear conditions on the projection onto a product of small sets: finds x with
+/// Linear conditions on the projection P onto a product of small sets: finds x with
 /// c_k.P(y + sum of x_l w_l) = load_k.
 ///
-/// Along c itself that is the minimum of a convex function, which has one if the load is within what the set
-/// can carry, and Newton's method with a line search finds it; a single condition is found in a bracket.
+/// For w = c, x is the minimum of a convex function, which exists if the set can carry the loads.
+/// 1. One condition: Newton's method in a bracket.
+/// 2. Several: Newton's method with a line search, its matrix shifted towards a majorant where it overshoots.
 template <class Set>
 class LoadBalance {
  public:
   LoadBalance(const Set& set, const std::vector<Condition>& conditions);
 
   int count() const { return static_cast<int>(load_.size()); }
-  /// How often the set has been asked for its loads: passes over all cells.
+  /// Evaluations of the loads: passes over all cells.
   long evaluations() const { return evaluations_; }
 
-  /// y += sum of x_k c_k in the cells whose set is not zero alone
+  /// y += sum of x_k c_k in the contact cells
   void add(const Coefficients& x, Eigen::ArrayXd& y) const;
 
-  /// Along the conditions' own fields, from the guess x on, or from where y would do without the set if that
-  /// is too far off; false if no x does.
+  /// Along w = c, from the guess x, or from the x that would balance y without P if the guess is too far off;
+  /// false if no x is found.
   bool solve(const Eigen::ArrayXd& y, Coefficients& x) const;
 
-  /// Along others close to what they turn into once the tractions answer; false if there is none near by.
+  /// Along tangents w, near the elastic response to c; false if no x is found nearby.
   template <typename Direction>
   bool solve_along(const Eigen::ArrayXd& y, std::span<const Direction* const> w, Coefficients& x) const {
     return solve_along(y, w, x, false);

@@ -8,22 +8,22 @@
 namespace slipstick::solver {
 namespace {
 
-/// rho over the mean of the inverse symbol. Smaller is more careful about changing cells' states; between
-/// 0.1 and 0.3 makes no difference to tractions, 1 overshoots; many small contact spots want it small: from
-/// 0.2 to 0.05 a rough sphere on 512 x 512 cells at half its limit takes 7 steps in place of 10.
+/// rho over the mean of the inverse symbol. A smaller rho changes fewer states per step. For tractions 0.1 to
+/// 0.3 makes no difference, 1 overshoots. Many small contact spots need a small rho: a rough sphere on
+/// 512 x 512 cells at half its limit takes 10 steps with 0.2 and 7 with 0.05.
 constexpr double kRho = 0.2;
 constexpr double kRhoOfSpots = 0.05;
 constexpr double kRhoOfPressure = 0.1;
-/// Iterations of the linear problem that refines the multipliers at the end, at most; each brings them nearer
-/// by about this factor.
+/// Most iterations of the linear problem that refines the multipliers at the end; each reduces their error by
+/// about kRefined.
 constexpr int kRefiningIterations = 2;
 constexpr double kRefined = 5.0;
 /// Safety factor: the error of multipliers falls about as the gap does.
 constexpr double kMultiplierSafety = 10.0;
-/// Steps without a lower gap that end the run; fewer where the gap is good enough already.
+/// Steps without a lower gap that end the run; fewer if the gap is certified over energy_before.
 constexpr int kIdleSteps = 8;
 constexpr int kIdleStepsOfEnough = 2;
-/// Halvings of a Newton step, and of a gradient step of length rho, before it is given up.
+/// Most halvings of a Newton step, and of a gradient step of length rho.
 constexpr int kMaxHalvings = 6;
 constexpr int kMaxGradientHalvings = 30;
 
@@ -56,7 +56,7 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
                                          const NewtonOptions& options) {
   NewtonSummary summary;
   safeguards_ = {};
-  linear_.forget_tangents();
+  linear_.discard_tangents();
   state_.enter(q, multipliers);
   double best_gap = std::numeric_limits<double>::infinity();
   double wanted = options.tolerance;
@@ -129,7 +129,7 @@ Coefficients NaturalMapNewton<Set>::jump_loads(const ArrayXd& q) {
   return loads;
 }
 
-/// trial = q and this part of the linear solution and of the jumps.
+/// trial = q + length (linear solution + jumps).
 template <AdmissibleSet Set>
 void NaturalMapNewton<Set>::write_trial(const ArrayXd& q, double length) {
   clear(state_.set().sweep(), trial_.q);
@@ -141,7 +141,7 @@ void NaturalMapNewton<Set>::write_trial(const ArrayXd& q, double length) {
     auto trial = trial_.q.segment(first, last - first);
     trial = q.segment(first, last - first) + length * trial;
   });
-  if constexpr (kIsScalar) linear_.hand_on(state_, trial_.q);
+  if constexpr (kIsScalar) linear_.redistribute(state_, trial_.q);
 }
 
 template <AdmissibleSet Set>
@@ -190,9 +190,8 @@ bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
   return false;
 }
 
-/// The largest relative error of the multipliers: what the last step has changed them by was the error
-/// before, of which a part is left as of the gap. Those of no load are as good as the others, unless they are
-/// what is left of the states before.
+/// The largest relative error of the multipliers: their last change times the last reduction of the gap.
+/// Multipliers of zero loads are skipped, unless they follow from earlier states.
 template <AdmissibleSet Set>
 double NaturalMapNewton<Set>::multiplier_error(const Coefficients& last, double part_of_gap) const {
   const Coefficients& now = state_.multipliers();
@@ -207,9 +206,9 @@ double NaturalMapNewton<Set>::multiplier_error(const Coefficients& last, double 
   return largest;
 }
 
-/// The multipliers, of this relative error, to the tolerance: where it is above, to second order, those of a
-/// Newton step that keeps the loads. False if the gap at those multipliers is above the tolerance: then
-/// another step is due.
+/// If the relative error of the multipliers exceeds the tolerance, replaces them by the multipliers of a
+/// Newton step that keeps the loads, which are right to second order. False if the gap is then above the
+/// tolerance, so that another step is due.
 template <AdmissibleSet Set>
 bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, double error, NewtonSummary& summary) {
   if (error <= tolerance) return true;
@@ -227,12 +226,11 @@ bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, double er
     return true;
   }
   state_.set_multipliers(first_order);
-  linear_.forget_tangents();
+  linear_.discard_tangents();
   return false;
 }
 
-/// An admissible state from which no step leads on, described as well as it can be: short of its tolerance,
-/// or within it where rounding keeps the multipliers of second order out.
+/// Ends at an admissible state that no step improves: above the tolerance, or certified within rounding.
 template <AdmissibleSet Set>
 NewtonSummary NaturalMapNewton<Set>::stop(const ArrayXd& q, const NewtonOptions& options,
                                           NewtonSummary& summary, const std::string& why) {

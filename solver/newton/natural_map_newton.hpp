@@ -11,13 +11,11 @@
 namespace slipstick::solver {
 
 struct NewtonOptions {
-  double tolerance = 1e-8;       ///< on gap / (q.Kq/2); see is_certified()
-  double part_of_first_gap = 0;  ///< of the field that it begins with: as good as the tolerance
-  long max_applications = 1000;  ///< of the operator
-  /// Whether the multipliers are wanted to the tolerance, at some applications more where they need be.
-  bool refine_multipliers = true;
-  /// At least: a step gives each cell its state, which a start that is good enough may not have.
-  int least_iterations = 0;
+  double tolerance = 1e-8;         ///< on gap / (q.Kq/2); see is_certified()
+  double part_of_first_gap = 0;    ///< stop at this part of the first gap, if that is above the tolerance
+  long max_applications = 1000;    ///< of the operator
+  bool refine_multipliers = true;  ///< to the tolerance, by a few more applications if necessary
+  int least_iterations = 0;        ///< 1 for guesses: a step determines the states of the cells
   Progress progress = {};
 };
 
@@ -33,15 +31,15 @@ struct NewtonSummary {
 /// Semismooth Newton method on the natural map q = P(q - rho (Kq + g - multipliers c)) of a convex program
 /// over a product of small sets (Hintermueller, Ito and Kunisch 2003; for friction Alart and Curnier 1991).
 ///
-/// Each step fixes the state that the natural map gives to every cell and solves the linear problem in the
-/// tangent space by conjugate gradients. The step's end
-/// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
-/// which disturb the multipliers alone. Near gross slip these fields bring the loads back to second order
-/// only, and cannot make up for what cells bring that jump onto their circles; where they fail the linear
-/// problem is solved again with the jumps' loads taken out of it. Pressures that would turn negative are
-/// handed on to cells beside them. Where the energy is less before the step's end than there, the step ends
-/// at its least, which costs nothing: the set is convex. Where it does not fall at all the step is halved;
-/// where even that fails, steps of the projected gradient take over, which always descend.
+/// 1. Multipliers: c.P(q - rho s) = load with s = Kq + g - multipliers c. Stop if gap / (q.Kq/2) is below the
+///    tolerance.
+/// 2. Linearise: P(q - rho s) determines the state of each cell (stick, slip; contact, open).
+/// 3. Solve (K + stiffness) d = -s on the tangent space of these states by conjugate gradients.
+/// 4. q + d is projected onto the set, and its loads restored along the tangents (K + stiffness)^-1 c. Near
+///    gross slip that may fail, because cells jump onto their circles: then 3 is repeated without the loads
+///    of the jumps. Negative pressures are redistributed to neighbouring cells.
+/// 5. The step ends where the energy along it is least; the set is convex. If the energy does not fall the
+///    step is halved, and at last replaced by a projected gradient step, which always descends. Again from 1.
 ///
 /// Compiled for both sets.
 template <AdmissibleSet Set>
@@ -49,19 +47,18 @@ class NaturalMapNewton {
  public:
   using ArrayXd = Eigen::ArrayXd;
 
-  /// packing: of all fields, the cells whose set is not zero alone.
+  /// packing: of all fields, the contact cells.
   NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol,
                    Packing& packing);
 
-  /// Improves q, any field of the right size, until its certificate holds: the grid's own rows of it, and of
-  /// the fields that the functions below return.
-  /// multipliers: guesses of those of the imposed conditions, or empty.
+  /// Improves q, any field of the right size, until its certificate holds: this rank's rows of it.
+  /// multipliers: guesses for the imposed conditions, or empty.
   NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options);
 
-  /// At the end, before take_displacement(): u + g - multipliers c of the last q, in the cells whose set is
-  /// not zero alone; zero in others.
+  /// After run(), and before take_displacement(): K q + g - multipliers c in the contact cells, zero in
+  /// others.
   ArrayXd take_slip() { return state_.take_slip(); }
-  /// At the end: K q.
+  /// After run(): K q.
   ArrayXd take_displacement() { return state_.take_displacement(); }
 
   long applications() const { return state_.op().applications(); }

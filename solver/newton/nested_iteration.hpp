@@ -12,15 +12,14 @@
 
 namespace slipstick::solver {
 
-/// What a nested solve ends with on its finest grid. The displacement may be zero where the set is zero
-/// alone.
+/// The result of a nested solve on its finest grid. The displacement may be zero outside the contact cells.
 struct NestedSummary {
   NewtonSummary newton;
   Eigen::ArrayXd field;         ///< q or p
   Eigen::ArrayXd displacement;  ///< K q
   Eigen::ArrayXd slip;          ///< K q + g - multipliers c
   std::vector<GridWork> grids;  ///< coarsest first
-  double part = 1.0;            ///< of the finest grid's cells that Newton's method looked at
+  double part = 1.0;            ///< contact cells, or candidates for them, over all cells of the finest grid
   Safeguards safeguards;        ///< of all grids
 };
 
@@ -30,12 +29,12 @@ inline double coarse_tolerance(const Grid& grid) {
   return 1.0 / (mirrored * static_cast<double>(grid.cells()));
 }
 
-/// Nor need tractions be better than what is lost on the way to the next mesh, which is about the gap that a
-/// mesh begins with: solved further, a coarse answer spares that mesh no step. Pressures decide which cells
-/// are in contact at all.
+/// Coarse tractions are solved to this part of their first gap, which is about the error of prolongation:
+/// a smaller one would not spare the next grid a step. Pressures are not, since they decide which cells are
+/// in contact.
 constexpr double kPartOfFirstGap = 0.01;
 
-/// What solve_nested() asks of a problem on one grid.
+/// A problem on one grid, for solve_nested().
 template <class Problem>
 concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op,
                                  NestedSummary& summary) {
@@ -48,12 +47,13 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.guess() } -> std::same_as<Eigen::ArrayXd>;     // near the answer; empty: by coarser grids
   {problem.keep_own_rows()};                               // which are enough once it has been coarsened
   { problem.coarsened(grid) } -> std::same_as<Problem>;    // on the coarse grid
-  // Which cells it looks at follows from what was found on the coarse grid, and from what is found:
-  {problem.look_ahead(problem, summary.newton, summary.field)};
-  { problem.overlooks(op, summary, 0.0) } -> std::same_as<bool>;  // then it looks at more
+  // Candidates for contact cells, predicted from the coarse grid's answer:
+  {problem.predict_candidates(problem, summary.newton, summary.field)};
+  // True if other cells are in contact; then these have become candidates:
+  { problem.missed_contact_cells(op, summary, 0.0) } -> std::same_as<bool>;
 };
 
-/// Solves on one grid, from the result's field on. What it finds is packed as the problem then is.
+/// Solves on one grid, starting at the result's field. The result's fields are packed by problem.packing().
 template <NestedProblem Problem>
 void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                    const Coefficients& multipliers, NewtonOptions options, bool guessed,
@@ -76,13 +76,17 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
     iterations += result.newton.iterations;
     result.slip = newton.take_slip();
     result.displacement = newton.take_displacement();
-  } while (problem.overlooks(op, result, options.tolerance));
+  } while (problem.missed_contact_cells(op, result, options.tolerance));
   result.grids.push_back({grid.n1, grid.n2, op.applications(), iterations, result.newton.gap});
 }
 
-/// Solves from the coarsest grid up, or from a guess. From coarse grids only the change from start() is
-/// taken: start() itself is known in full. The result's field is known in the grid's own rows; slip and
-/// displacement are packed.
+/// 1. The first field is the guess, or start() on the coarsest grid that can_coarsen() allows.
+/// 2. Solve there, to a tolerance of the order of the mesh's error.
+/// 3. Prolong the change from start(), which is exact on every grid, to the next finer grid, and the contact
+///    cells with it; again from 2, on the finest grid to the given tolerance.
+/// 4. If cells that are no candidates turn out to be in contact, add them and solve again on that grid.
+///
+/// The result's field is known in this rank's rows; slip and displacement are packed.
 template <NestedProblem Problem>
 NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                              const NewtonOptions& options, const OnCellsKnown& on_cells_known = {}) {
@@ -110,7 +114,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
       in_own_rows(grid, change.size(), [&](Index first, Index count) {
         result.field.segment(first, count) += change.segment(first, count);
       });
-      problem.look_ahead(on_coarse, below.newton, result.field);
+      problem.predict_candidates(on_coarse, below.newton, result.field);
     }
     multipliers = below.newton.multipliers;
   }
@@ -121,8 +125,8 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   return result;
 }
 
-/// solve_on_grids() with the field and the slip made whole when operators and workspaces are gone; the
-/// displacement is known in the grid's own rows.
+/// solve_on_grids(), then, once operators and workspaces are freed, field and slip are made whole; the
+/// displacement is known in this rank's rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options, const OnCellsKnown& on_cells_known) {

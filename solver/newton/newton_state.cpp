@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/grid/own_rows.hpp"
+#include "solver/grid/reduction.hpp"
+
 namespace slipstick::solver {
 namespace {
 
-/// A step ends where its energy is least if that is within these parts of it. Closer to its end it is taken
-/// in full, so that cells reach the faces of their sets.
+/// A step is shortened to the least energy if that lies between these parts of it. Closer to the end it is
+/// taken in full, so that cells reach the faces of their sets.
 constexpr double kMinPart = 1e-3;
 constexpr double kNearlyAll = 0.9;
 
@@ -33,10 +36,22 @@ void NewtonState<Set>::enter(ArrayXd& q, const Coefficients& multipliers) {
   multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
   Coefficients x = Coefficients::Zero(balance_.count());
   if (balance_.solve(q, x)) balance_.add(x, q);
-  if (program_.symmetrise) program_.symmetrise(q);
+  symmetrise(q);
   set_.project(q);
   op_.apply_own(q, u_, packing_);
   energy_ = energy_of(q, u_);
+}
+
+/// Rounding is not its own image, and does not shrink over the steps of a history: without translations only
+/// this removes the force that it leaves.
+template <AdmissibleSet Set>
+void NewtonState<Set>::symmetrise(ArrayXd& q) const {
+  if (!program_.turns_into_itself) return;
+  if (!op_.grid().ranks.several()) return turn_into_itself(q);
+  ArrayXd whole = packing_.unpacked(q);
+  share_rows(op_.grid(), whole);
+  turn_into_itself(whole);
+  q = packing_.packed(whole);
 }
 
 template <AdmissibleSet Set>
@@ -72,7 +87,7 @@ double NewtonState<Set>::relative_gap(const ArrayXd& q, ArrayXd& slip) {
   });
   gap_ = set_.gap(q, slip);
   if (gap_ == 0.0) return 0.0;
-  // Next to no traction its rounding may be less than nothing.
+  // For tractions near zero rounding may make it negative.
   if (std::abs(elastic_) <= kEnergyRounding * program_.energy_before) elastic_ = 0.0;
   return elastic_ >= 0.0 ? gap_ / elastic_ : std::numeric_limits<double>::quiet_NaN();
 }
@@ -95,8 +110,8 @@ Eigen::ArrayXd NewtonState<Set>::take_slip() {
   return std::move(y_);
 }
 
-/// The part of the way from q to the trial at which the energy is least, wherever that is. The energy is
-/// quadratic, of slope s.(trial - q), and y = q - rho s.
+/// The t at which the energy of q + t (trial - q) is least. It is quadratic in t with the slope
+/// s.(trial - q), and y = q - rho s.
 template <AdmissibleSet Set>
 double NewtonState<Set>::least_energy_at(const ArrayXd& q, const Trial& trial) const {
   const double slope = sum([&](Index first, Index last) {
@@ -113,7 +128,7 @@ double NewtonState<Set>::least_energy_at(const ArrayXd& q, const Trial& trial) c
   return -slope / (rho_ * curvature);
 }
 
-/// The trial at this part of the way from q.
+/// trial = q + part (trial - q).
 template <AdmissibleSet Set>
 void NewtonState<Set>::shorten(const ArrayXd& q, Trial& trial, double part) const {
   set_.sweep().each_own([&](Index first_cell, Index last_cell) {
@@ -129,11 +144,11 @@ void NewtonState<Set>::shorten(const ArrayXd& q, Trial& trial, double part) cons
 
 template <AdmissibleSet Set>
 bool NewtonState<Set>::accept(ArrayXd& q, Trial& trial, Safeguards& safeguards) {
-  if (program_.symmetrise) program_.symmetrise(trial.q);
+  symmetrise(trial.q);
   set_.project(trial.q);
   op_.apply_own(trial.q, trial.u, packing_);
   double after = energy_of(trial.q, trial.u);
-  // Energies are known to the rounding of what they are taken from.
+  // Energies are known to the rounding of their terms.
   const double highest =
       energy_ + kEnergyRounding * std::abs(energy_) + kGapUnits * std::abs(program_.energy_before);
   const bool lower = after <= highest;

@@ -4,11 +4,11 @@
 
 namespace slipstick::solver {
 
-/// What Newton's method had to do beside its plain steps, and how often.
+/// Counts of the safeguards that Newton's method has used.
 struct Safeguards {
   int second_solves = 0;   ///< of a linear problem, without the loads of cells that jump onto their set
   int halvings = 0;        ///< of a step that did not lower the energy
-  int gradient_steps = 0;  ///< where no part of a Newton step did
+  int gradient_steps = 0;  ///< because no part of a Newton step lowered the energy
   int breakdowns = 0;      ///< of conjugate gradients
   std::string breakdown;   ///< the first of them, with its number; empty: none
 

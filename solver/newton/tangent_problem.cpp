@@ -7,22 +7,21 @@
 namespace slipstick::solver {
 namespace {
 
-/// Tangents are made anew where more than this part of the cells has changed its state, or multipliers have
-/// changed by more than this part of them. Older ones cost as many iterations; new ones as much as three.
+/// Tangents are computed anew if more than these parts of the cells have changed their state, or of the
+/// multipliers have changed. They cost about three iterations; nearby ones need no more iterations than new.
 constexpr double kFewChanges = 0.1;
 constexpr double kNearMultipliers = 0.1;
-/// The residual falls by the first factor while states change, and by no more than the second once they
-/// stand: then by what the tolerance needs, as this part of what is wanted.
+/// Reduction of the residual: kLooseReduction while states change; then kPartOfNeeded times the reduction of
+/// the gap that the tolerance requires, but no less than kTightReduction.
 constexpr double kLooseReduction = 0.1;
 constexpr double kTightReduction = 1e-4;
-constexpr double kPartOfWanted = 0.3;
-/// States change all over a rough surface, pressures' and tractions': more is lost on a state that will not
-/// last.
+constexpr double kPartOfNeeded = 0.3;
+/// On rough surfaces, and for pressures, states change everywhere: while the active set changes, tight linear
+/// solves are wasted. Forcing term of the inexact Newton method: eta = kDistrust sqrt(changed / free cells),
+/// at most kLooseReductionOfRagged.
 constexpr double kLooseReductionOfRagged = 0.2;
-/// Such a state can be trusted up to this factor times the root of the part of the free cells that have
-/// changed: the forcing term of the inexact Newton method.
 constexpr double kDistrust = 3.0;
-/// Iterations of one linear problem, at most.
+/// Most iterations of one linear problem.
 constexpr int kInnerIterations = 40;
 
 }  // namespace
@@ -59,8 +58,8 @@ void TangentProblem<Set>::linearise(const NewtonState<Set>& state, Trial& scratc
   prepared_at_ = state.multipliers();
 }
 
-/// Whether the tangents of an earlier step will do: hardly a cell has changed its state since the last step,
-/// and slip, which the tangent space's stiffness goes with, has not changed much since they were made.
+/// True if the tangents of an earlier step are near enough: few cells have changed their state in the last
+/// step, and the multipliers, with them slip and stiffness, have changed little since the tangents were made.
 template <AdmissibleSet Set>
 bool TangentProblem<Set>::tangents_are_near(const NewtonState<Set>& state) const {
   return static_cast<double>(changed_) <= kFewChanges * static_cast<double>(space_.free.count()) &&
@@ -68,19 +67,19 @@ bool TangentProblem<Set>::tangents_are_near(const NewtonState<Set>& state) const
 }
 
 template <AdmissibleSet Set>
-LinearTarget TangentProblem<Set>::target(double wanted, long applications_left) const {
+LinearTarget TangentProblem<Set>::target(double needed, long applications_left) const {
   const int iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));
   if (!extends_) {
-    const double reduction = changed_ > 0 ? kLooseReduction : kPartOfWanted * wanted;
+    const double reduction = changed_ > 0 ? kLooseReduction : kPartOfNeeded * needed;
     return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
   }
   const double changed =
       static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
-  const double reduction = std::max(kPartOfWanted * wanted, kDistrust * std::sqrt(changed));
+  const double reduction = std::max(kPartOfNeeded * needed, kDistrust * std::sqrt(changed));
   return {std::clamp(reduction, kTightReduction, kLooseReductionOfRagged), iterations};
 }
 
-/// The right-hand side -(s + stiffness q): the tangent space sees the turning part of q.
+/// The right-hand side -(s + stiffness q), which the tangent space projects.
 template <AdmissibleSet Set>
 void TangentProblem<Set>::write_residual(const NewtonState<Set>& state, const ArrayXd& q, ArrayXd& slip) {
   state.each([&](Index first, Index last) {
@@ -95,7 +94,7 @@ void TangentProblem<Set>::write_residual(const NewtonState<Set>& state, const Ar
   });
 }
 
-/// A start with these loads, and its residual.
+/// x = the combination of tangents with these loads, and its residual.
 template <AdmissibleSet Set>
 void TangentProblem<Set>::begin_with(const NewtonState<Set>& state, const Coefficients& loads, ArrayXd& Ax) {
   TangentOperator map{state.op(), space_, packing_};

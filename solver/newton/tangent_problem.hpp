@@ -9,15 +9,15 @@
 
 namespace slipstick::solver {
 
-/// How far a linear problem is worth solving.
+/// When to stop the linear problem.
 struct LinearTarget {
   double reduction;  ///< of the residual
   int max_iterations;
 };
 
-/// The linear problem of a Newton step: with the state that the natural map gives to every cell, the change
-/// of the field in the tangent space that takes the slip away, by conjugate gradients. Trials are made after
-/// it: until then it works in their memory. Compiled for both sets.
+/// The linear problem of a Newton step: the change of the field in the tangent space of the cells' states
+/// that removes the slip, by conjugate gradients. It uses the memory of the Trial, which is written
+/// afterwards. Compiled for both sets.
 template <AdmissibleSet Set>
 class TangentProblem {
  public:
@@ -26,26 +26,24 @@ class TangentProblem {
   /// symbol: of the preconditioner; it is not owned.
   TangentProblem(const NewtonState<Set>& state, InverseSymbol& symbol);
 
-  /// Fixes the cells' states, and makes the tangents of the conditions or takes those of an earlier step.
+  /// Fixes the cells' states, and computes the tangents of the conditions, or keeps an earlier step's.
   void linearise(const NewtonState<Set>& state, Trial& scratch);
-  /// What the next step needs. wanted: the part that is to be left of the gap; applications_left: one at
-  /// least.
-  LinearTarget target(double wanted, long applications_left) const;
+  /// needed: tolerance over gap; applications_left: at least one.
+  LinearTarget target(double needed, long applications_left) const;
 
   /// loads: of the solution; empty: none.
   CgSummary solve(const NewtonState<Set>& state, const ArrayXd& q, const LinearTarget& target,
                   const Coefficients& loads, Trial& scratch);
   const ArrayXd& solution() const { return x_; }
 
-  /// Whether the conditions' tangents can be used: a solution keeps the loads then.
+  /// True if the conditions' tangents can be used: then a solution keeps the loads.
   bool has_tangents() const { return has_tangents_; }
-  /// Tangents are made anew before they are used again.
-  void forget_tangents() { has_tangents_ = false; }
-  /// Restores the loads of the projected trial along the tangents; false if that is not possible near by.
+  void discard_tangents() { has_tangents_ = false; }
+  /// Restores the loads of the projected trial along the tangents; false if no solution is nearby.
   bool restore_loads(const NewtonState<Set>& state, ArrayXd& trial) const;
-  /// See Extension; of scalars. Overwrites the residual.
-  void hand_on(const NewtonState<Set>& state, ArrayXd& trial) {
-    extension_.hand_on(state.packing(), space_.f1, trial, d_, r_);
+  /// Extension::redistribute() for scalars. Overwrites the residual.
+  void redistribute(const NewtonState<Set>& state, ArrayXd& trial) {
+    extension_.redistribute(state.packing(), space_.f1, trial, d_, r_);
   }
 
  private:
@@ -67,8 +65,8 @@ class TangentProblem {
   TangentSpace space_;
   bool extends_;  ///< pressures beyond their free cells, tractions beyond a ragged contact
   Extension extension_;
-  Coefficients prepared_at_;  ///< the multipliers that the tangents were made at
-  Index changed_ = 0;         ///< cells whose state the last linearisation changed
+  Coefficients prepared_at_;  ///< multipliers at which the tangents were computed
+  Index changed_ = 0;         ///< cells whose state changed in the last linearisation
   bool has_tangents_ = false;
 };
 

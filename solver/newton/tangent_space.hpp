@@ -16,25 +16,23 @@
 
 namespace slipstick::solver {
 
-/// Where each cell's traction may move once its state is fixed, with what that adds to the operator there:
-/// freely in a stick cell, along its circle in a slip cell, not at all outside. On fields of that kind the
-/// linearised problem is K + stiffness, and
+/// The directions in which each cell's traction may change once its state is fixed: any in a stick cell,
+/// along its circle in a slip cell, none outside. On such fields the linearised problem is K + stiffness, and
 ///
 ///   projector * scale * (inverse symbol) * scale * projector + shift * projector
 ///
-/// is close to its inverse. The two terms reproduce 1/(1/xi + stiffness), the symbol of the inverse where the
-/// stiffness varies slowly, at the wave numbers xi = P and P/12, P the mean of the inverse symbol along the
-/// free direction; one term alone is wrong by the ratio of the largest to the smallest wave number where the
-/// stiffness is large.
+/// approximates its inverse. The two terms reproduce 1/(1/xi + stiffness), the symbol of the inverse where
+/// the stiffness varies slowly, at the wave numbers xi = P and P/12, with P the mean of the inverse symbol
+/// along the free direction. With only one term the error would be the ratio of the largest to the smallest
+/// wave number where the stiffness is large.
 ///
-/// The stiffness and what the preconditioner takes need not be exact, but the directions do: fields that
-/// leave them by more than their own rounding would feel the part of the slip that no traction can change,
-/// and no residual could fall below that.
+/// Stiffness and preconditioner may be inexact, the directions not: a component of the slip that no traction
+/// can change would otherwise bound the residual from below.
 struct TangentSpace {
   using Field = Eigen::ArrayXd;
 
-  /// For vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
-  /// is free, no vector on a line: a linearisation counts the cells that change.
+  /// For vectors (2 components) or scalars (1) on the contact cells. At first no scalar is free and no vector
+  /// on a line: linearise() counts the cells that change.
   TangentSpace(Index components, const Sweep& cells)
       : f1(cells.size()),
         f2(components == 2 ? cells.size() : 0),
@@ -46,7 +44,7 @@ struct TangentSpace {
     for (Eigen::ArrayXf* const field : {&stiffness, &scale, &shift}) clear(cells, *field);
   }
 
-  /// On so many cells, none of which may carry any.
+  /// Without contact cells among `cells`.
   TangentSpace(Index components, Index cells) : TangentSpace(components, Sweep(cells)) {}
 
   Index components() const { return f2.size() > 0 ? 2 : 1; }
@@ -61,8 +59,8 @@ struct TangentSpace {
     shift[cell] = 0.0F;
   }
 
-  /// A cell that moves along the unit vector (f1, f2) against a stiffness; mean: that of the inverse symbol
-  /// along it.
+  /// A cell that moves along the unit vector (f1, f2) against the stiffness `along`; mean: of the inverse
+  /// symbol along (f1, f2).
   void set_line(Index cell, double along1, double along2, double along, double mean) {
     constexpr double kLowOverMean = 1.0 / 12.0;
     const double low = kLowOverMean * mean;
@@ -74,16 +72,16 @@ struct TangentSpace {
     shift[cell] = static_cast<float>(alpha * along * low * mean);
   }
 
-  /// Whether a vector moves along a line, or not at all.
+  /// True if a vector moves along a line, or not at all.
   bool on_line(Index cell) const { return stiffness[cell] > 0.0F; }
 
-  /// Finds the cells where something is free, after these were set.
+  /// Sets `free`, after all cells have been set.
   void find_free() {
     const bool vectors = components() == 2;
     free.assign([&](Index i) { return f1[i] != 0.0 || (vectors && (f2[i] != 0.0 || !on_line(i))); });
   }
 
-  /// v: what of it may move, in some cells.
+  /// Projects v onto the space, in some cells.
   void project(Index first, Index last, Field& v) const {
     const Index n = f1.size();
     if (components() == 1) {
@@ -94,7 +92,7 @@ struct TangentSpace {
       if (any_on_line<Value>(i)) put(v, i, projected(i, get<Value>(v, i), get<Value>(v, i + n)));
     });
   }
-  /// (v1, v2) likewise, in one cell of vectors or in two.
+  /// The projection of (v1, v2), in one cell or in two.
   template <typename Value>
   std::array<Value, 2> projected(Index i, Value v1, Value v2) const {
     if (!any_on_line<Value>(i)) return {v1, v2};
@@ -104,7 +102,7 @@ struct TangentSpace {
     const auto on_line = get<Value>(stiffness, i) > 0.0;
     return {on_line ? along * along1 : v1, on_line ? along * along2 : v2};
   }
-  /// Whether one of these cells moves along a line: whole stretches stick.
+  /// True if one of these cells moves along a line. Most neighbours stick together.
   template <typename Value>
   bool any_on_line(Index i) const {
     return on_line(i) || (sizeof(Value) > sizeof(double) && on_line(i + 1));
@@ -121,7 +119,7 @@ struct TangentSpace {
     Packet::put(v.data() + i + f1.size(), components[1]);
   }
 
-  /// z = scale * r, in some cells, of an r that may move
+  /// z = scale * r in some cells, for an r in the space
   void load(Index first, Index last, const Field& r, Field& z) const {
     const Index n = last - first;
     if (components() == 1) {
@@ -134,7 +132,7 @@ struct TangentSpace {
     });
   }
 
-  /// y = projector * scale * z + shift * r, in some cells, of an r that may move; y may be z.
+  /// y = projector * scale * z + shift * r in some cells, for an r in the space; y may be z.
   void complete(Index first, Index last, const Field& z, const Field& r, Field& y) const {
     const Index n = f1.size();
     if (components() == 1) {
@@ -149,10 +147,10 @@ struct TangentSpace {
     });
   }
 
-  Field f1, f2;  ///< unit vector of a cell on a line, zero else; of scalars f1 alone: 1 where they are free
+  Field f1, f2;  ///< unit vector of a cell on a line, else zero; scalars have only f1: 1 where free
   Eigen::ArrayXf stiffness;     ///< lambda = |s|/(mu p) in slip cells, above zero; zero in stick cells
   Eigen::ArrayXf scale, shift;  ///< of the preconditioner
-  Sweep free;                   ///< over the cells where something is free
+  Sweep free;                   ///< the cells that may move
 
  private:
   static constexpr float kLeastStiffness = std::numeric_limits<float>::min();
@@ -194,7 +192,7 @@ struct TangentPreconditioner {
 
   const Sweep& cells() const { return space.free; }
 
-  /// The three parts of y = M r, of which the first and the last go cell by cell.
+  /// The three parts of y = M r; the first and the last work cell by cell.
   void load(Index first, Index last, const Field& r, Field& z) const { space.load(first, last, r, z); }
   void transform(Field& z) {
     packing.on_grid(z, z, [&](const Field&, Field& field) {

@@ -15,7 +15,7 @@ namespace slipstick::solver {
 /// pressure file that does not fit the grid, holds a negative value, or carries another load than the scene
 /// says.
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
-                             const Eigen::ArrayXd& opening = {}, const TurnGoal& goal = {},
+                             const Eigen::ArrayXd& opening = {}, const StaggeredTarget& goal = {},
                              const std::function<void(int applications, double gap)>& progress = {});
 
 }  // namespace slipstick::solver

@@ -236,7 +236,7 @@ void require_carried(const Scene& scene, const Model& model, const Step& step, c
 
 TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
                                   const ContactState& before,
-                                  const std::function<void(int, double)>& progress, const TurnGoal& goal) {
+                                  const std::function<void(int, double)>& progress, const StaggeredTarget& goal) {
   const Reduction part = traction_part(scene, model, pressure, before.pressure);
   note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
   TangentialProblem problem = reduced(loads.problem, part);

@@ -34,7 +34,7 @@ void require_carried(const Scene& scene, const Model& model, const Step& step, c
 TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads,
                                   const Eigen::ArrayXd& pressure, const ContactState& before,
                                   const std::function<void(int iteration, double change)>& progress,
-                                  const TurnGoal& goal = {});
+                                  const StaggeredTarget& goal = {});
 
 /// The slip of the step in cells that are pressed and have no friction: no traction depends on it.
 void add_slip_without_friction(TangentialSolution& solution, const Scene& scene, const Model& model,

@@ -12,7 +12,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-/// An affine map of so many dimensions that brings points nearer to (1, 1, ...), each its own way.
+/// An affine map that contracts towards (1, 1, ...), in each dimension by another factor.
 ArrayXd residual_at(const ArrayXd& x) {
   const ArrayXd kept = ArrayXd::LinSpaced(x.size(), -0.5, 0.9);
   return kept * (x - 1.0) + 1.0 - x;
@@ -36,7 +36,7 @@ TEST(Anderson, SolvesAnAffineMapInOneTurnMoreThanItHasDimensions) {
   }
 }
 
-/// Without combinations x moves by the residual alone: its error shrinks by the map's largest factor, 0.9.
+/// With depth 0 x moves by its residual: the error shrinks by the map's largest factor, 0.9.
 TEST(Anderson, OfNoDepthOnlyIterates) { EXPECT_NEAR(error_after(20, 0, 3, 1.0), std::pow(0.9, 20), 1e-14); }
 
 /// Changes that are alike, as of a residual that no longer falls, leave the combination finite.

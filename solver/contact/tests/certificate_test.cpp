@@ -290,7 +290,7 @@ TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
                           .force = 1e-10,
                           .friction_bound = -0.1,
                           .energy = 1.0};
-  EXPECT_EQ(beyond(holds, bounds), "");
+  EXPECT_EQ(violated_bounds(holds, bounds), "");
   const struct {
     double Certificate::*member;
     const char* name;
@@ -302,14 +302,15 @@ TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
     for (const double value : {2e-8, kNaN, HUGE_VAL}) {
       Certificate fails = holds;
       fails.*member = value;
-      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(name));
-      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr("allowed: 1e-"));
-      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(fmt::format("{:.3g}", value)));
+      EXPECT_THAT(violated_bounds(fails, bounds), testing::HasSubstr(name));
+      EXPECT_THAT(violated_bounds(fails, bounds), testing::HasSubstr("allowed: 1e-"));
+      EXPECT_THAT(violated_bounds(fails, bounds), testing::HasSubstr(fmt::format("{:.3g}", value)));
     }
   }
   Certificate nothing_asked = holds;
   nothing_asked.gap = kNaN;
-  EXPECT_NE(beyond(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "") << "NaN never holds";
+  EXPECT_NE(violated_bounds(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "")
+      << "NaN never holds";
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
   }
 }
 
-/// What Coulomb's law says of each cell; certify() does not come into it.
+/// Coulomb's law cell by cell, without certify().
 TEST(Coulomb, HoldsInEachCell) {
   const CoulombBench bench(48, 24);
   const TangentialSolution solution = bench.solve(0.7, 1e-13);
@@ -190,7 +190,7 @@ TEST(CoulombWork, ThatDoesNotSufficeIsSaidWithTheGapThatIsLeft) {
   options.max_applications = 2;
   const TangentialSolution cut = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
   EXPECT_EQ(cut.status, Status::not_converged);
-  EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, asked for 1e-12", cut.change)),
+  EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, tolerance 1e-12", cut.change)),
             std::string::npos)
       << cut.message;
   EXPECT_EQ(bench.solve(0.5).message, "");
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Work,
                          testing::Combine(testing::Values<Index>(64, 128, 256, 512),
                                           testing::Values(0.5, 0.9, 0.99)));
 
-/// Applications on all grids in those of the finest: a count, the same on every machine.
+/// Applications on all grids in units of the finest grid's: a count, the same on every machine.
 TEST_P(Work, IsBoundedAtEveryMesh) {
   const auto [cells, moment_ratio] = GetParam();
   const ModelSolution solution = solve_in_model_units(paper_scene(cells, moment_ratio));

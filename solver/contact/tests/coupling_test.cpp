@@ -17,7 +17,7 @@ namespace {
 using Eigen::ArrayXd;
 using std::numbers::pi;
 
-/// Gap over energy that scenes are solved to, and what two answers of one discrete problem may differ by.
+/// The scenes' tolerance on gap over energy, and the difference of two answers of one discrete problem.
 constexpr double kGap = 1e-12;
 constexpr double kSame = 1e-8;
 
@@ -37,7 +37,8 @@ ModelSolution solved(const Scene& scene) {
 
 // --- kernels ---
 
-/// Betti: the work of shear in the displacements by pressure is that of the pressure in those by shear.
+/// Betti: the work of shear in the displacements by pressure equals the work of pressure in the displacements
+/// by shear.
 TEST(ShearKernel, IsReciprocalToThePressures) {
   const SharedLaw law = half_spaces({1.0, 0.2}, {3.0, 0.35});
   for (const Grid& grid : {Grid{9, 6, 1.0, 0.7}, Grid{16, 16, 1.0, 1.0}, Grid{1, 5, 1.0, 1.0}}) {
@@ -55,8 +56,8 @@ TEST(ShearKernel, IsReciprocalToThePressures) {
   }
 }
 
-/// K13 is odd in x1 and even in x2, K23 the reverse. Far off they are those of a point load: pressure draws
-/// a compressible surface towards itself (Johnson 1985, Eq. 3.18), in relation to a rigid one.
+/// K13 is odd in x1 and even in x2, K23 even in x1 and odd in x2. Far off they equal a point load's: pressure
+/// draws a compressible surface towards itself (Johnson 1985, Eq. 3.18), in relation to a rigid one.
 TEST(CouplingKernel, IsOddAndDrawsInwards) {
   const Grid grid{41, 41, 1.0, 1.0};
   const HalfSpaces law(elastic_pair({1.0, 0.25}, {kInfinity, 0.0}));
@@ -148,8 +149,8 @@ TEST_P(Exchange, ReversesTheShearByPressure) {
   EXPECT_LT(one.stick_cells, one.contact_cells - 10);
 }
 
-/// Under a moment too it is the answer to the reverse one with its sign changed, and that is the mirror image
-/// about x1 = 0 of the answer to the moment itself: q1 is mirrored, q2 mirrored and reversed.
+/// Under a moment too: the exchanged answer is minus the answer to the opposite moment, which is the mirror
+/// image about x1 = 0 of the answer to the moment, with q1 mirrored and q2 mirrored and reversed.
 TEST_P(Exchange, MirrorsTheAnswerToAMoment) {
   Scene scene = dissimilar(GetParam(), 0.5);
   const ModelSolution one = solved(scene);
@@ -192,7 +193,7 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     EXPECT_GE(p.minCoeff(), 0.0);
     const double gap = (p * (opening - lowest)).sum() / energy;
     EXPECT_LE(gap, tolerance + 1e-13);
-    EXPECT_NEAR(solution.normal.complementarity, gap, 1e-3 * gap + 1e-14) << "that of the fields returned";
+    EXPECT_NEAR(solution.normal.complementarity, gap, 1e-3 * gap + 1e-14) << "of the returned fields";
     EXPECT_NEAR(lowest, solution.normal.approach, std::sqrt(tolerance) * lowest);
     EXPECT_NEAR(solution.normal_load / paper::kLoad, 1.0, kRounding);
 
@@ -286,9 +287,9 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
   return scene;
 }
 
-/// Stick radius over contact radius at mu = 0.2986 and beta = 1/2: where pressure acts on shear alone the
-/// root of artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)) (Goodman's approximation, Spence 1975); where shear acts
-/// on pressure too, 1/2 (Spence 1975).
+/// Stick radius over contact radius at mu = 0.2986 and beta = 1/2: if only pressure acts on shear, the root
+/// of artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)) (Goodman's approximation, Spence 1975); if shear acts on
+/// pressure too, 1/2 (Spence 1975).
 double exact_stick_ratio(Coupling coupling) { return coupling == Coupling::full ? 0.5 : 0.623310792994697; }
 
 double counted_stick_ratio(const ModelSolution& solution) {

@@ -1,4 +1,4 @@
-// What is wrong in the paper's discrete equations as printed, each beside what holds.
+// Errors in the paper's discrete equations as printed, each compared with the correct equation.
 
 #include <gtest/gtest.h>
 

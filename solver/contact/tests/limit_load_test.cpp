@@ -20,7 +20,7 @@ using Eigen::ArrayXd;
 /// The factor is a least value, so that what Newton's method leaves in the motion counts to second order;
 /// sums of some thousands of cells round by less.
 constexpr double kRelative = 1e-12;
-/// The motion, its centre and the resultants depend on the root of what is left of the least value, 5e-8,
+/// The motion, its centre and the resultants depend on the root of the error of the least value, 5e-8,
 /// times the contact's condition.
 constexpr double kMotion = 2e-7;
 
@@ -51,7 +51,7 @@ LimitContact ring(Index n) {
   return ring;
 }
 
-/// No symmetry, a third of the cells in contact, one cell much stronger than the others if asked for.
+/// No symmetry, a third of the cells in contact, and optionally one cell much stronger than the others.
 LimitContact rough(unsigned seed, double strongest = 1.0) {
   LimitContact contact = empty(11, 8, 0.2, 0.3);
   std::mt19937 random(seed);

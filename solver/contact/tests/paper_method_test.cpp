@@ -36,7 +36,7 @@ TEST_P(Sphere, CarriesTheMomentWithinTheFrictionBounds) {
   EXPECT_NEAR(solution.moment / (GetParam().moment_ratio * solution.moment_limit), 1.0, kRounding);
   EXPECT_LE(solution.certificate.moment, kRounding);
   EXPECT_LE(solution.certificate.friction_bound, kRounding);
-  EXPECT_LE(solution.certificate.force, 1e-8);  // by symmetry alone: nothing in the method balances forces
+  EXPECT_LE(solution.certificate.force, 1e-8);  // by symmetry: no step of the method balances forces
   EXPECT_NEAR(solution.moment_limit / paper::kMomentLimit, 1.0, 1e-4);
 
   const ArrayXd& q = solution.tangential.traction;
@@ -116,14 +116,14 @@ TEST_P(Sphere, AnswersItsTwistWithItsMoment) {
       solve_by_paper_method(*bench.op, under_twist(bench.bound, by_moment.twist), to_tolerance(kTight));
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_EQ(by_twist.twist, by_moment.twist);
-  // Slip directions freeze at other iterates, so the two answers differ by what the method leaves of
-  // Coulomb's law: a gap of 1e-5 of the energy is sqrt(1e-5) in tractions.
+  // Slip directions freeze at other iterates, so the two answers differ by the method's error: a gap of 1e-5
+  // of the energy is sqrt(1e-5) in tractions.
   EXPECT_NEAR(bench.moment_of(by_twist.traction) / bench.moment_of(by_moment.traction), 1.0, 1e-5);
   EXPECT_LE((by_twist.traction - by_moment.traction).matrix().norm(),
             3e-3 * by_moment.traction.matrix().norm());
 }
 
-/// Torsion of axisymmetric half-spaces strains them in shear alone, so Poisson's ratio drops out, on a grid
+/// Torsion of axisymmetric half-spaces is pure shear, so that Poisson's ratio drops out, on a grid
 /// of squares only in the limit.
 TEST_P(Sphere, ForgetsPoissonsRatioWithTheMesh) {
   const auto difference = [&](Index cells) {
@@ -221,7 +221,7 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   EXPECT_LT(radial_part(by_paper_method(scene)), 1e-8);
 }
 
-/// The exact twist depends on the combined G alone.
+/// The exact twist depends only on the combined G.
 TEST(DissimilarMaterials, OfOneCombinedModulusTurnAlike) {
   Scene scene = paper_scene(128, 0.5);
   scene.coupling = Coupling::none;
@@ -244,10 +244,10 @@ TEST(Applications, AreOneAnIterationAndOneMoreWhereTheStickAreaChanged) {
     const long before = bench.op->applications();
     const TangentialSolution solution = bench.twist_by_moment(moment_ratio, 1e-8);
     const long count = bench.op->applications() - before;
-    EXPECT_GE(count, solution.iterations + 2);  // the first guess and what is reported
+    EXPECT_GE(count, solution.iterations + 2);  // the first guess and the final displacements
     EXPECT_LT(count, 2 * solution.iterations);
   }
-  // Nothing slips on a bonded contact: one an iteration, and the two.
+  // A bonded contact does not slip: one application an iteration, and two more.
   Bench bonded(32);
   bonded.bound = (bonded.bound > 0.0).select(ArrayXd::Constant(bonded.bound.size(), 1e6), 0.0);
   const long before = bonded.op->applications();

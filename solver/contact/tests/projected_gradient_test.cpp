@@ -54,7 +54,7 @@ struct GradientBench {
   double limit;
 };
 
-/// Displacements as by a pressure on unlike bodies: towards the centre, a fifth of what torsion causes.
+/// Displacements as by a pressure on unlike bodies: towards the centre, a fifth of torsion's displacements.
 ArrayXd inward(const GradientBench& bench, double size = 0.3) {
   ArrayXd load(2 * bench.grid.cells());
   load << -size * cell_x1(bench.grid), -size * cell_x2(bench.grid);
@@ -154,7 +154,7 @@ TEST_P(Ellipse, HasTheLeastEnergy) {
   }
 }
 
-/// Without a moment: the surfaces slip by what the pressure moves them, unless tractions hold them.
+/// Without a moment: the surfaces slip by the displacements by the pressure, unless tractions hold them.
 TEST(EllipticContact, IsNotWithoutTractionWhereThePressureMovesTheSurfaces) {
   const GradientBench bench(16);
   TangentialProblem problem = under_moment(bench.bound, 0.0);
@@ -263,13 +263,13 @@ TEST(ProjectedGradient, TellsItsProgress) {
 TEST(ProjectedGradientBreakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
   const Bench bench(24);
   ProjectedGradientOptions options = to_gap(1e-9);
-  options.max_iterations = 7;  // between two looks at the certificate
+  options.max_iterations = 7;  // between two evaluations of the certificate
   const TangentialSolution solution =
       solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_EQ(solution.iterations, 7);
   EXPECT_EQ(solution.message,
-            fmt::format("too many iterations: gap {:.3g} after 7, asked for 1e-09", solution.change));
+            fmt::format("too many iterations: gap {:.3g} after 7, tolerance 1e-09", solution.change));
   EXPECT_GT(solution.change, 1e-9);
   EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, 0.5, kRounding);  // admissible all the same
 }
@@ -358,8 +358,8 @@ TEST(Momentum, KeepsIterationsFew) {
 }
 
 /// An operator D - (1 - eps) Dc (Dc)^T/c.Dc with D diagonal, 1 and 1/20, and the checkerboard c soft: the
-/// limit of the momentum says nothing, and that of a torsion which hardly feels c must be given up where it
-/// overshoots.
+/// limit of the momentum is no help, and the limit from torsion, which hardly feels c, must be dropped where
+/// it overshoots.
 class SoftOnTheCheckerboard final : public LinearOperator {
  public:
   explicit SoftOnTheCheckerboard(const Grid& grid) : LinearOperator(grid, tangential_kernel()) {

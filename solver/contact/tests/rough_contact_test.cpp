@@ -133,7 +133,7 @@ TEST(RoughContact, FullContactIsALinearSystem) {
   const Eigen::VectorXd exact = matrix.partialPivLu().solve(right);
   const NormalSolution found = face.pressed(pressure);
   ASSERT_TRUE((exact.head(n).array() > 0.0).all());
-  // The gap is of first order in what is left of the residual, so the pressure's error is of its size.
+  // The gap is of first order in the residual, so that the pressure's error is of its size.
   constexpr double kError = 1e-8;
   EXPECT_LT((found.pressure - exact.head(n).array()).abs().maxCoeff(), kError * exact.head(n).maxCoeff());
   EXPECT_NEAR(found.approach / exact[n], 1.0, kError);

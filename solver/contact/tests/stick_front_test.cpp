@@ -148,7 +148,7 @@ TEST(StickFront, OnCoarseMeshesIsNoWorseThanCounting) {
   EXPECT_LE(errors.fitted, errors.counted);
 }
 
-/// Nor does it matter that the angle jumps on one of the axes.
+/// The jump of the angle on one of the axes does not matter either.
 TEST_P(MadeUpFront, TurnsWithTheContact) {
   constexpr Index n = 64;
   const Fields fields = sample(GetParam().made_up, n);
@@ -256,7 +256,7 @@ TEST(StickFront, IsCountedOnThoseRaysAlone) {
   EXPECT_GT(front.fitted, 0.6);
   EXPECT_LT(front.fitted, 0.9);
   EXPECT_THAT(front.why_counted, HasSubstr("too narrow"));
-  // What x1 > 0.45 cuts off a disc of radius 1/2, but to the staircase of the straight edge.
+  // The part x1 > 0.45 of a disc of radius 1/2, up to the staircase of the straight edge.
   const double area = 0.25 * (std::numbers::pi - std::acos(0.9)) + 0.45 * std::sqrt(0.25 - 0.45 * 0.45);
   EXPECT_NEAR(front.radius / std::sqrt(area / std::numbers::pi), 1.0, 2e-3);
 }

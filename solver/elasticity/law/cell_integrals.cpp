@@ -61,7 +61,7 @@ CellIntegrals closed_form(double x, double y, double h1, double h2) {
   };
 }
 
-/// Adds the integrals over kLanes cells at (x, y). Those in a lane that is not `wanted` are left alone.
+/// Adds the integrals over kLanes cells at (x, y), in the `wanted` lanes only.
 void add_quadrature(CellRow& row, Index block, double x, const Lanes& y, const Lanes& wanted, double h1,
                     double h2, const GaussRule& rule) {
   Lanes xx = Lanes::Zero();

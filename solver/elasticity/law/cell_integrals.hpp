@@ -7,7 +7,7 @@
 
 namespace slipstick::solver {
 
-/// Gauss-Legendre quadrature of so many points over (-1/2, 1/2).
+/// Gauss-Legendre quadrature over (-1/2, 1/2).
 struct GaussRule {
   std::vector<double> node;
   std::vector<double> weight;
@@ -24,13 +24,13 @@ struct CellIntegrals {
   double y;
 };
 
-/// Relative error below 1e-13 for offsets up to 8,192 cells, of xx and yy relative to their sum (far off on
-/// an axis one of them is less than the other by the square of the distance in cells, and no component needs
-/// it alone): closed form near by, Gauss-Legendre quadrature, whose terms are all of one sign, further off,
-/// where the closed form would cancel.
+/// Relative error below 1e-13 for offsets up to 8,192 cells; of xx and yy relative to their sum, since far
+/// off on an axis one is less than the other by the square of the distance in cells, and every component
+/// contains both. By the closed form nearby, and further off, where that cancels, by Gauss-Legendre
+/// quadrature, whose terms have one sign.
 CellIntegrals cell_integrals(double x, double y, double h1, double h2);
 
-/// Cells side by side that are integrated together: what fills vector registers.
+/// Neighbouring cells that are integrated together, to fill vector registers.
 constexpr Index kLanes = 4;
 using Lanes = Eigen::Array<double, kLanes, 1>;
 

@@ -19,8 +19,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// difference along x1, which turns with twice the angle; K13 and K23 along the offset.
 constexpr std::array kBesselOrders{0, 0, 2, 1};
 
-/// Cells are cut until they lie so many of their sides from the singularities, which are two thicknesses away
-/// from the plane of the surface. That many Gauss points then leave kRuleError.
+/// Cells are divided until their distance from the singularities, two thicknesses away from the surface, is
+/// at least kMinOffset sides. Then at most kMaxPoints Gauss points leave kRuleError.
 constexpr double kMinOffset = 1.75;
 constexpr std::size_t kMaxPoints = 10;
 constexpr double kRuleError = 1e-14;
@@ -100,8 +100,8 @@ void add_bases(std::vector<std::vector<double>>& tables, std::span<const Compone
   });
 }
 
-/// Wave numbers between neighbours of which nothing happens: their ratio, and how many of them span all
-/// scales from far above the thinner layer's, 100 over its thickness, to far below.
+/// Sampled wave numbers: ratio of neighbours, between which the compliance is smooth, and their count from
+/// 100 over the thinner layer's thickness down to far below its scale.
 constexpr double kWaveRatio = 1.25, kLargestWave = 100.0;
 constexpr int kWaves = 150;
 /// Bodies differ by more than this part of their compliance: data have twelve digits.
@@ -123,7 +123,7 @@ CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& up
     const WaveCompliance pair = compliance(wave);
     couples_ = couples_ || std::abs(pair.coupling) > kAlike * pair.across;
   }
-  radial_.emplace(kBesselOrders, [this](double x) { return beyond_layers(x); });
+  radial_ = HankelTable::of(kBesselOrders, [this](double x) { return beyond_layers(x); });
 }
 
 WaveCompliance CoatedHalfSpaces::compliance(double wave_number) const {

@@ -17,7 +17,7 @@ enum class Component { k11, k12, k22, k13, k23, k33 };
 inline constexpr std::array kAllComponents{Component::k11, Component::k12, Component::k22,
                                            Component::k13, Component::k23, Component::k33};
 
-/// How a component changes with the sign of each coordinate of the offset.
+/// The parity of a component in each coordinate of the offset.
 inline Parity parity(Component component) {
   switch (component) {
     case Component::k12:
@@ -45,10 +45,9 @@ struct PlaneWave {
 /// Distinct entries of a symmetric symbol: p11, p12, p22. A normal symbol is p11, and the others are zero.
 using Symbol = std::array<double, 3>;
 
-/// The elastic law of an interface: how its two sides move apart under the tractions between them. It is
-/// linear, symmetric and positive definite, the same at each point and in each direction. u is the
-/// displacement of the lower surface less that of the upper, q the traction on the lower one. What adds up
-/// tractions and what solves for them know no more of elasticity than this class.
+/// The elastic law of an interface: the displacement u of the lower surface less the upper one's, by the
+/// traction q on the lower one. It is linear, symmetric, positive definite, homogeneous and isotropic. This
+/// class is the solver's only access to elasticity.
 class ElasticLaw {
  public:
   ElasticLaw() = default;
@@ -62,8 +61,8 @@ class ElasticLaw {
   virtual std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
                                                             const Grid& offsets, int threads = 1) const = 0;
 
-  /// Inverses of the symbol of (K11, K12, K22), or of K33, at some waves on cells of h1 by h2. What follows
-  /// from them is a preconditioner: it may be as exact as is cheap, but is symmetric and positive definite.
+  /// Inverses of the symbol of (K11, K12, K22), or of K33, at some waves on cells of h1 by h2, for a
+  /// preconditioner: they may be approximate, but must be symmetric and positive definite.
   virtual void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                                std::span<Symbol> inverses) const = 0;
 
@@ -71,10 +70,10 @@ class ElasticLaw {
   /// q.q. The certificate bounds the error in energy by it.
   virtual double least_eigenvalue(double h1, double h2) const = 0;
 
-  /// Whether pressures move the surfaces sideways and shear opens them: whether K13 and K23 are not zero.
+  /// True if K13 and K23 are not zero: pressures move the surfaces sideways, and shear opens them.
   virtual bool couples() const = 0;
 
-  /// Adds all that the law depends on.
+  /// Adds the law's kind and parameters.
   virtual void add_to(CacheKey& key) const = 0;
 
   /// The table of one component.

@@ -15,13 +15,12 @@ struct HalfSpace {
   double poisson_ratio;
 };
 
-/// A pair of half-spaces as the interface sees it. Compliances add in K11, K12, K22, K33 and
-/// subtract in K13, K23.
+/// The constants of a pair of half-spaces. Compliances add in K11, K12, K22, K33 and subtract in K13, K23.
 struct ElasticPair {
   double shear_compliance;    ///< 1/G = sum of 1/G_i
   double poisson_compliance;  ///< sum of nu_i/G_i
   double normal_compliance;   ///< sum of (1 - nu_i)/G_i = 2/E*
-  double mismatch;            ///< (1 - 2 nu)/G of the lower less that of the upper; 0 for similar materials
+  double mismatch;            ///< (1 - 2 nu)/G, lower less upper; 0 for similar materials
 
   double effective_modulus() const { return 2.0 / normal_compliance; }
   double shear_modulus() const { return 1.0 / shear_compliance; }
@@ -38,9 +37,9 @@ class HalfSpaces final : public ElasticLaw {
   /// One pass over the offsets serves all components, and square cells need only offsets on one side of the
   /// diagonal.
   ///
-  /// With CellTraction::smooth each coefficient is less by 1/24 of its second differences along both axes:
-  /// cells of constant traction lose the part (xi_1^2 h1^2 + xi_2^2 h2^2)/24 of a field's component of wave
-  /// vector xi, and that gives it back, whatever the contact's shape.
+  /// With CellTraction::smooth, 1/24 of its second differences along both axes is subtracted from each
+  /// coefficient: constant tractions reduce a wave of wave vector xi by the factor
+  /// 1 - (xi_1^2 h1^2 + xi_2^2 h2^2)/24, which this corrects for any contact shape.
   std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
                                                     const Grid& offsets, int threads = 1) const override;
 
@@ -48,7 +47,7 @@ class HalfSpaces final : public ElasticLaw {
   /// and by C33/|xi| times them across (transforms of the solutions of Cerruti and Boussinesq: 1/r becomes
   /// 2 pi/|xi|, and r_i r_j/r^3 becomes 2 pi (I - n n^T)/|xi|). S and N are the shear and the Poisson
   /// compliance, C33 the normal one. The first has the inverse |xi| (I + N/(S - N) n n^T)/S. The symbol of
-  /// smooth cell tractions is larger by what second differences multiply it by.
+  /// smooth cell tractions is larger by the factor sharpening().
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                        std::span<Symbol> inverses) const override;
 

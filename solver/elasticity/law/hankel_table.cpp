@@ -17,13 +17,14 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
-/// s(x) sqrt(x) is a function of ln x, sampled over one period. It falls to rounding at both ends: like
-/// exp(-2 x) above, like sqrt(x) below, with room for what the largest r asks for.
-constexpr Index kSamples = 2048;
+/// s(x) sqrt(x) is sampled as a function of ln x over one period. It falls to rounding at both ends, like
+/// exp(-2 x) above and like sqrt(x) below, there with a margin for the largest r.
+constexpr Index kSamples = HankelTable::kSamples;
 constexpr double kLargest = 25.0;
 constexpr double kPeriod = 112.0;
+const double kFirstSample = std::log(kLargest) - kPeriod;
 constexpr double kFrequencyStep = 2.0 * kPi / kPeriod;
-/// Frequencies up to 45. Those above are below rounding where s is analytic 45 degrees off the axis.
+/// Frequencies up to 45. Higher ones have amplitudes below rounding if s is analytic 45 degrees off the axis.
 constexpr Index kFrequencies = 802;
 /// End of the first interval, and half octaves after it.
 constexpr double kFirst = 0.5;
@@ -43,14 +44,8 @@ Complex power_integral(Complex z, int order) {
 
 /// The powers x^(-1/2 + i w) that make up each s have integrals in closed form: each integral is r^(-1/2)
 /// times the real part of the sum of these coefficients, one a column, times exp(-i w ln r).
-Eigen::Array4Xcd series_of(const std::array<int, 4>& orders,
-                           const std::function<HankelTable::Values(double)>& spectrum) {
-  const double first = std::log(kLargest) - kPeriod;
-  Eigen::ArrayX4d samples(kSamples, 4);
-  for (Index i = 0; i < kSamples; ++i) {
-    const double x = std::exp(first + kPeriod / static_cast<double>(kSamples) * static_cast<double>(i));
-    samples.row(i) = std::sqrt(x) * spectrum(x).transpose();
-  }
+Eigen::Array4Xcd series_of(const std::array<int, 4>& orders, Eigen::ArrayX4d samples) {
+  for (Index i = 0; i < kSamples; ++i) samples.row(i) *= std::sqrt(HankelTable::sample_point(i));
   Eigen::Array4Xcd series(4, kFrequencies);
   for (Index term = 0; term < 4; ++term) {
     double* const a = samples.col(term).data();
@@ -58,7 +53,7 @@ Eigen::Array4Xcd series_of(const std::array<int, 4>& orders,
     for (Index n = 0; n < kFrequencies; ++n) {
       const double w = kFrequencyStep * static_cast<double>(n);
       const Complex sum = n == 0 ? 0.5 * a[0] : Complex(a[n], a[kSamples - n]);
-      series(term, n) = 2.0 / static_cast<double>(kSamples) * sum * std::polar(1.0, -w * first) *
+      series(term, n) = 2.0 / static_cast<double>(kSamples) * sum * std::polar(1.0, -w * kFirstSample) *
                         power_integral({-0.5, w}, orders[static_cast<std::size_t>(term)]);
     }
   }
@@ -67,11 +62,15 @@ Eigen::Array4Xcd series_of(const std::array<int, 4>& orders,
 
 }  // namespace
 
-HankelTable::HankelTable(const std::array<int, 4>& orders, const std::function<Values(double x)>& spectrum)
+double HankelTable::sample_point(Index i) {
+  return std::exp(kFirstSample + kPeriod / static_cast<double>(kSamples) * static_cast<double>(i));
+}
+
+HankelTable::HankelTable(const std::array<int, 4>& orders, const Eigen::ArrayX4d& samples)
     : coefficients_(Eigen::Array4Xd::Zero(4, (kHalfOctaves + 1) * kCoefficients)),
       begin_(kHalfOctaves + 2),
       over_half_width_(kHalfOctaves + 1) {
-  const Eigen::Array4Xcd series = series_of(orders, spectrum);
+  const Eigen::Array4Xcd series = series_of(orders, samples);
   constexpr auto n = static_cast<double>(kCoefficients);
   begin_[0] = 0.0;
   for (Index interval = 0; interval <= kHalfOctaves; ++interval) {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <functional>
 
 #include "solver/grid/grid.hpp"
 
@@ -10,14 +9,28 @@ namespace slipstick::solver {
 
 /// Integrals over all x > 0 of s(x) J_m(x r) for four functions s, each with its own order m of Bessel's
 /// function, tabulated for r >= 0. s is bounded, analytic in a sector around the positive axis, and decays
-/// like exp(-2 x). The error is below 5e-13/(1 + r) up to r = 1e7, times the largest s; beyond, an integral
-/// is taken to fall like 1/r.
+/// like exp(-2 x). The error is below 5e-13/(1 + r) times the largest s up to r = 1e7; beyond, an integral
+/// is assumed to fall like 1/r.
+///
+/// 1. sqrt(x) s(x) as a Fourier series in ln x, by FFT.
+/// 2. Each term x^(-1/2 + i w) has its integral in closed form, so that the series can be summed at any r.
+/// 3. Chebyshev polynomials of the sums on intervals of r.
 class HankelTable {
  public:
   using Values = Eigen::Array4d;
 
-  /// spectrum: all s at one x.
-  HankelTable(const std::array<int, 4>& orders, const std::function<Values(double x)>& spectrum);
+  static constexpr Index kSamples = 2048;
+  static double sample_point(Index i);
+
+  /// Row i of samples: all s at sample_point(i).
+  HankelTable(const std::array<int, 4>& orders, const Eigen::ArrayX4d& samples);
+  /// spectrum(x): the Values of all s at x.
+  template <class Spectrum>
+  static HankelTable of(const std::array<int, 4>& orders, const Spectrum& spectrum) {
+    Eigen::ArrayX4d samples(kSamples, 4);
+    for (Index i = 0; i < kSamples; ++i) samples.row(i) = Values(spectrum(sample_point(i))).transpose();
+    return {orders, samples};
+  }
 
   Values at(double r) const;
 

@@ -17,7 +17,7 @@ struct LawParameter {
   std::string meaning;
 };
 
-/// A law that a scene may ask for in [layer]: what lies between its half-spaces.
+/// A law of the table [layer] of a scene, for a layer between the half-spaces.
 struct LawKind {
   std::string word;
   std::string meaning;

@@ -33,7 +33,7 @@ ArrayXd applied(InverseSymbol& symbol, ArrayXd field) {
   return field;
 }
 
-/// From what swells when it is pressed to what keeps its volume.
+/// Poisson's ratios, from auxetic to incompressible.
 constexpr double kRatios[] = {-0.9, 0.0, 0.3, 0.5};
 
 struct SymbolCase {
@@ -86,7 +86,7 @@ class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
 INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Those on quadrants, and those of them that mirror at the diagonal.
+/// On quadrants, without and with a mirror at the diagonal.
 class QuadrantSymbol : public InverseSymbolOf {};
 class DiagonalSymbol : public InverseSymbolOf {};
 
@@ -141,7 +141,7 @@ TEST_P(InverseSymbolOf, IsLinearAndRemembersNothing) {
   EXPECT_TRUE((applied(*symbol, x) == Px).all());
 }
 
-/// With what stands there before.
+/// The memory's previous content does not matter.
 TEST_P(InverseSymbolOf, HasTheSameBitsInMemoryThatItIsGiven) {
   FftwBuffer memory(1 << 16);
   const std::span<double> all(memory.data(), 1 << 16);
@@ -171,8 +171,8 @@ TEST_P(InverseSymbolOf, RefusesFieldsOfAnotherSize) {
   EXPECT_THROW(symbol->apply({}), std::invalid_argument);
 }
 
-/// Plane waves along and across their direction are eigenfunctions, with |xi|/(S - N) and |xi|/S; those of
-/// pressure, with |xi|/C33.
+/// Plane waves along and across their direction are eigenfunctions, with |xi|/(S - N) and |xi|/S; plane waves
+/// of pressure with |xi|/C33.
 TEST(PlaneWave, IsMultipliedByTheInverseSymbol) {
   const Grid grid{24, 40, 0.5, 0.8};
   const double nu = 0.3;
@@ -238,7 +238,7 @@ TEST(InverseSymbol, UndoesTheOperatorAwayFromTheEdge) {
   EXPECT_LT(normal_error, 0.03);
 }
 
-/// What it makes of one loaded cell, at that cell.
+/// The response of one loaded cell at that cell.
 TEST(InverseSymbolDiagonal, IsThatOfTheOperator) {
   for (const Grid& grid : {Grid{24, 40, 0.5, 0.8}, Grid{28, 10, 1.0, 0.2}}) {
     Grid quadrant{grid.n1 / 2, grid.n2 / 2, grid.h1, grid.h2, true};

@@ -44,7 +44,7 @@ class Random {
   std::mt19937_64 generator_;
 };
 
-/// Zero in cells whose set is zero alone, which a projection need not look at.
+/// Zero outside the contact cells, which a projection may skip.
 template <class Set>
 ArrayXd projected(const Set& set, const ArrayXd& field) {
   ArrayXd inside = ArrayXd::Zero(field.size());
@@ -69,7 +69,7 @@ ArrayXd displacement(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) {
   return (K * q.matrix()).array() + g;
 }
 
-/// On the segment between two fields, where c.q is what was asked for; a convex set holds it with its ends.
+/// The point with a given c.q on the segment between two fields; a convex set contains it with its ends.
 ArrayXd with_load(const ArrayXd& below, const ArrayXd& above, const ArrayXd& c, double load) {
   const double low = (below * c).sum();
   const double high = (above * c).sum();
@@ -204,7 +204,7 @@ TYPED_TEST(Admissible, GapBoundsWhatTheEnergyCanFallBy) {
   for (int i = 0; i < 30; ++i) {
     const ArrayXd q = this->random_admissible(shape, random);
     const double gap = set.gap(q, displacement(K, g, q) - random.value() * c);
-    EXPECT_GT(gap, 0.0);  // random fields do not obey the law
+    EXPECT_GT(gap, 0.0);  // random fields violate Coulomb's law
     for (int j = 0; j < 30; ++j) {
       const ArrayXd other = this->random_admissible(shape, random);
       const double load = (q * c).sum();
@@ -354,7 +354,7 @@ TEST(FrictionLinearised, CountsTheCellsThatChange) {
   EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
 }
 
-/// What the first linearisation counts must not depend on what the memory held before.
+/// The count of the first linearisation must not depend on uninitialised memory.
 TEST(FreshTangentSpace, HasNothingFree) {
   {
     const TangentSpace used = [] {

@@ -187,7 +187,7 @@ TEST_P(CgOn, SolvesUnderNoneOneAndThreeConditions) {
   }
 }
 
-/// Whatever the tangents are: those of other states serve as well.
+/// Any tangents keep the conditions, also the tangents of other states.
 TEST_P(CgOn, SolvesWithTangentsOfOtherStates) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     CgBench b = bench(seed);
@@ -234,8 +234,8 @@ TEST_P(CgOn, KeepsTheConditionThroughout) {
   }
 }
 
-/// Wherever it is stopped: what is left under the multipliers says how far they are off, c.A^-1 left over
-/// c.A^-1 c. They are the same whether the last residual is preconditioned or the condition is.
+/// At any iteration the last residual determines the error of the multipliers, c.A^-1 residual / c.A^-1 c.
+/// They are the same whether the last residual is preconditioned or the condition is.
 TEST_P(CgOn, FindsTheMultiplierAsWellAsTheResidualSays) {
   CgBench b = bench(6);
   const ArrayXd c = random_field(b.size, 51);
@@ -305,8 +305,8 @@ struct DenseMap {
   void project(Index, Index, ArrayXd&) const {}
 };
 
-/// In as many iterations as there are unknowns, whatever positive definite preconditioner it is given, and
-/// from any start: what the constraints' values were there they are at the end.
+/// In as many iterations as there are unknowns, with any positive definite preconditioner, from any start,
+/// whose values of the constraints are kept.
 TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
   constexpr Index kSize = 12;
   const auto positive = [](unsigned seed) {

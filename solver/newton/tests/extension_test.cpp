@@ -28,7 +28,7 @@ TEST(Extension, CollectsAsTheAdjointOfWhatItExtends) {
   EXPECT_NEAR((extended * y).sum(), (x * collected).sum(), 1e-12);
 }
 
-/// Components do not see each other where nothing slips: together they are what each is alone.
+/// Where no cell slips the components are independent of each other.
 TEST(Extension, ContinuesEachComponentByItself) {
   const Grid grid{9, 14, 1.0, 1.0};
   ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
@@ -49,8 +49,8 @@ TEST(Extension, ContinuesEachComponentByItself) {
   }
 }
 
-/// Vectors that slip: the same for what is free of them. Across their line they are continued as where
-/// nothing is free, along it as far as they are stiff.
+/// The free part of slipping vectors is continued in the same way: across their line as outside the contact,
+/// along it in proportion to the stiffness.
 TEST(Extension, ContinuesWhatSlipHoldsFast) {
   const Grid grid{9, 150, 1.0, 1.0};
   const Index n = grid.cells();
@@ -137,8 +137,7 @@ TEST(Extension, MovesWithTheContact) {
   }
 }
 
-/// What leaves reaches the cells that stay by the adjoint: the sums of its product with any continuation
-/// agree.
+/// Removed pressures reach the remaining cells by the adjoint: products with any continuation agree.
 TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   const Grid grid{9, 14, 1.0, 1.0};
   const ArrayXd free = (ArrayXd::Random(grid.cells()) > -0.5).cast<double>();
@@ -150,7 +149,7 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   ArrayXd leaves(grid.cells());
   ArrayXd after = before;
   Packing all(grid, Sweep::whole(grid), 1);
-  extension.hand_on(all, free, after, mask, leaves);
+  extension.redistribute(all, free, after, mask, leaves);
   EXPECT_TRUE(((1.0 - stays) * after == 0.0).all());
   extension.prepare(mask = stays);
   const ArrayXd alone = x;
@@ -158,7 +157,7 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   EXPECT_NEAR(((after - stays * before) * alone).sum(), ((1.0 - stays) * before * x).sum(), 1e-12);
 }
 
-/// With nothing to hand on, nothing changes.
+/// Positive pressures on free cells stay as they are.
 TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
   const Grid grid{9, 14, 1.0, 1.0};
   const ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.0).cast<double>();
@@ -168,7 +167,7 @@ TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
   ArrayXd mask(before.size());
   ArrayXd leaves(before.size());
   Extension extension(grid, 1);
-  extension.hand_on(packing, ArrayXd::Ones(before.size()), after, mask, leaves);
+  extension.redistribute(packing, ArrayXd::Ones(before.size()), after, mask, leaves);
   EXPECT_TRUE((after == before).all());
 }
 

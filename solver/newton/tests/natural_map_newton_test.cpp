@@ -79,7 +79,7 @@ TEST_F(Newton, AllocatesNothingInTheIteration) {
   EXPECT_GE(summary.iterations, 3);
 }
 
-/// The gradient alone descends where conjugate gradients are led astray.
+/// Gradient steps descend where a preconditioner misleads conjugate gradients.
 TEST_F(Newton, FallsBackOnTheGradientWhereTheLinearSolveFails) {
   ASSERT_TRUE(run(q_).converged);
   Reversing reversing;
@@ -99,7 +99,7 @@ TEST_F(Newton, SaysThatItsApplicationsWereTooFew) {
   EXPECT_FALSE(summary.converged);
   EXPECT_THAT(summary.message, HasSubstr("within 4 operator applications"));
   EXPECT_GT(summary.gap, 1e-8);
-  // What it has is admissible and carries the load all the same.
+  // The last field is still admissible and carries the load.
   EXPECT_NEAR((q_ * rotation_).sum() / bench_.limit, 0.8, kRounding);
   EXPECT_LE((norms(q_) - bench_.bound).maxCoeff(), kRounding * bench_.bound.maxCoeff());
 }

@@ -54,8 +54,8 @@ int iterations_needed(Index cells, bool two_terms) {
   return summary.iterations;
 }
 
-/// One term alone is wrong by the ratio of the largest to the smallest wave number where cells slip far: the
-/// finer the grid the worse.
+/// With only one term the error where cells slip far is the ratio of the largest to the smallest wave number:
+/// it grows with the number of cells.
 TEST(TwoTermPreconditioner, NeedsHardlyMoreIterationsOnFinerGrids) {
   const int coarse = iterations_needed(32, true);
   const int fine = iterations_needed(128, true);

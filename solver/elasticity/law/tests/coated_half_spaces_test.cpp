@@ -101,7 +101,7 @@ TEST(WaveCompliance, IsWhatNaviersEquationsSayAndPositiveDefinite) {
 
 /// exp(-2 x) by orders 0, 1, 2 and x exp(-2 x) by order 0 (Abramowitz and Stegun, Eq. 29.3.58).
 TEST(HankelTable, HasTheTransformsOfExponentials) {
-  const HankelTable table({0, 1, 2, 0}, [](double x) -> HankelTable::Values {
+  const HankelTable table = HankelTable::of({0, 1, 2, 0}, [](double x) -> HankelTable::Values {
     return std::exp(-2.0 * x) * HankelTable::Values(1.0, 1.0, 1.0, x);
   });
   const auto error = [&](double r) {
@@ -160,8 +160,8 @@ TEST(RescaledLaw, IsTheLawWithEachOfItsLengthsInTheOtherUnit) {
   }
 }
 
-/// What the base adds to the coefficients at offset (x, y): the Fourier integral in polar coordinates of the
-/// wave vector, up to where exp(-2 k h) is below rounding.
+/// The change of the coefficients at offset (x, y) by the base: the Fourier integral in polar coordinates of
+/// the wave vector, up to where exp(-2 k h) is below rounding.
 std::array<double, 6> added_by_base(const CoatedBody& body, const Grid& cell, CellTraction traction, double x,
                                     double y) {
   const auto sinc = [](double a) { return a == 0.0 ? 1.0 : std::sin(a) / a; };
@@ -222,7 +222,7 @@ TEST(CoatedHalfSpaces, AreHalfSpacesWhereLayerAndBaseAreAlike) {
   EXPECT_EQ(tables_of(CoatedHalfSpaces({kSoft}, {kHard}), cell), plain);
 }
 
-/// A thin layer on a rigid base is Winkler's foundation: each cell stands alone, and a pressure shortens the
+/// A thin layer on a rigid base is Winkler's foundation: cells are independent, and a pressure shortens the
 /// layer as in uniaxial strain.
 TEST(CoatedHalfSpaces, AreWinklersFoundationOnARigidBase) {
   constexpr double kThickness = 1e-3;

@@ -99,8 +99,8 @@ std::array<double, 5> exact_integrals(double x, double y, double h1, double h2) 
 std::array<double, 5> as_array(const CellIntegrals& c) { return {c.xx, c.yy, c.xy, c.x, c.y}; }
 constexpr std::array<Parity, 5> kIntegralParity{Parity{1, 1}, {1, 1}, {-1, -1}, {-1, 1}, {1, -1}};
 
-/// Largest relative error of the five integrals, of the first two relative to their sum; those that are odd
-/// across an axis on which the cell lies must be 0.
+/// Largest relative error of the five integrals, of the first two relative to their sum. Integrals that are
+/// odd across an axis on which the cell lies must be 0.
 double worst_error(double x, double y, double h1, double h2) {
   const auto computed = as_array(cell_integrals(x, y, h1, h2));
   const auto exact = exact_integrals(x, y, h1, h2);
