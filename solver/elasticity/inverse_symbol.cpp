@@ -67,18 +67,12 @@ class PeriodicInverseSymbol final : public InverseSymbol {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
       throw std::invalid_argument("inverse symbol applied to a field of another size");
     }
-    const auto each_row = [&](const auto& work) {
-      const IndexRange own = transform_.own_samples();
-      in_parts(transform_.threads(), fields_ * own.count(), [&](int thread, Index first, Index last) {
-        for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());
-      });
-    };
-    each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data()); });
-    transform_.through_columns(fields_, fields_, [&](int, const PeriodicTransform::Columns& columns) {
+    transform_.each_sample(fields_, [&](int t, Index f, Index i) { load(t, f, i, field.data()); });
+    transform_.through_columns(fields_, fields_, [&](const PeriodicTransform::Columns& columns) {
       using Whole = std::integral_constant<Index, PeriodicTransform::kColumns>;
       columns.count == Whole::value ? multiply(columns, Whole()) : multiply(columns, columns.count);
     });
-    each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data()); });
+    transform_.each_sample(fields_, [&](int t, Index f, Index i) { store(t, f, i, field.data()); });
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }

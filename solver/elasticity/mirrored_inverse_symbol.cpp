@@ -175,29 +175,23 @@ void MirroredInverseSymbol::apply(std::span<double> field) {
     throw std::invalid_argument("inverse symbol applied to a field of another size");
   }
   const Index transformed = tangential_ && !symmetric_ ? 2 : 1;
-  const int threads = transform_.threads();
-  const IndexRange own = transform_.own_samples();
-  const auto each_row = [&](const auto& work) {
-    in_parts(threads, transformed * own.count(), [&](int thread, Index first, Index last) {
-      for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());
-    });
-  };
-  each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data() + f * cells); });
+  const auto samples_of = [&](Index f) { return field.data() + f * cells; };
+  transform_.each_sample(transformed, [&](int t, Index f, Index i) { load(t, f, i, samples_of(f)); });
   if (symmetric_) {
-    transform_.through_columns(1, 0, [&](int, const Columns& columns) {
+    transform_.through_columns(1, 0, [&](const Columns& columns) {
       with_count(columns.count, [&](auto count) { keep_spectrum(columns, count); });
     });
-    transform_.through_columns(0, 1, [&](int, const Columns& columns) {
+    transform_.through_columns(0, 1, [&](const Columns& columns) {
       with_count(columns.count, [&](auto count) { multiply_spectrum(columns, count); });
     });
   } else {
-    transform_.through_columns(transformed, transformed, [&](int, const Columns& columns) {
+    transform_.through_columns(transformed, transformed, [&](const Columns& columns) {
       with_count(columns.count, [&](auto count) { multiply(columns, count); });
     });
   }
-  each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data() + f * cells); });
+  transform_.each_sample(transformed, [&](int t, Index f, Index i) { store(t, f, i, samples_of(f)); });
   if (!symmetric_) return;
-  in_parts(threads, grid_.n1,
+  in_parts(transform_.threads(), grid_.n1,
            [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
 }
 

@@ -11,9 +11,9 @@
 
 namespace slipstick::solver {
 
-/// Fourier transforms of real fields over a period of n1 x n2 values, with `samples` rows that may differ from
-/// zero: for convolution over a period. PaddedTransform is for linear convolution, where the period is twice
-/// the field in each direction.
+/// Fourier transforms of real fields over a period of n1 x n2 values, with `samples` rows that may differ
+/// from zero: for convolution over a period. PaddedTransform is for linear convolution, where the period is
+/// twice the field in each direction.
 ///
 /// 1. Rows with samples: real to complex, one by one, from a thread's own memory (FFTW plans in place three
 ///    times as slowly).
@@ -70,9 +70,15 @@ class PeriodicTransform {
   }
 
   int threads() const { return threads_; }
-
-  /// The samples whose rows this rank transforms, and its columns.
-  const IndexRange& own_samples() const { return own_samples_; }
+  /// work(thread, field, i) for the samples of this rank in the first `fields` fields.
+  template <typename Work>
+  void each_sample(Index fields, const Work& work) const {
+    const Index own = own_samples_.count();
+    in_parts(threads_, fields * own, [&](int thread, Index first, Index last) {
+      for (Index k = first; k < last; ++k) work(thread, k / own, own_samples_.first + k % own);
+    });
+  }
+  /// This rank's columns.
   static IndexRange own_columns(const Shape& shape) {
     const IndexRange batches = shared_matrix(shape).own_columns();
     const Index columns = shape.n2 / 2 + 1;
@@ -92,7 +98,7 @@ class PeriodicTransform {
     fftw_execute_dft_c2r(plans_.row_backward.get(), numbers(sample(field, i)), values);
   }
 
-  /// For all columns of this rank: the first `inputs` fields forward, work(thread, columns), the first
+  /// For all columns of this rank: the first `inputs` fields forward, work(columns), the first
   /// `outputs` fields back.
   template <typename Work>
   void through_columns(Index inputs, Index outputs, const Work& work) {
@@ -107,7 +113,7 @@ class PeriodicTransform {
           fftw_execute_dft(plans_.column_forward.get(), numbers(columns), numbers(columns));
         }
         const Index first = (own.first + batch) * kColumns;
-        work(thread, Columns{scratch, columns_size(), first, std::min(kColumns, shape_.n2 / 2 + 1 - first)});
+        work(Columns{scratch, columns_size(), first, std::min(kColumns, shape_.n2 / 2 + 1 - first)});
         for (Index field = 0; field < outputs; ++field) {
           double* const columns = scratch + field * columns_size();
           fftw_execute_dft(plans_.column_backward.get(), numbers(columns), numbers(columns));
