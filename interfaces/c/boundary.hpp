@@ -9,21 +9,21 @@
 
 #include "interfaces/c/slipstick.h"
 
-/// Where C++ ends: every function of slipstick.h does its work inside guarded().
+/// The boundary between C and C++: every function of slipstick.h does its work inside guarded().
 namespace slipstick::c {
 
-/// Thrown where the caller asked for an end.
+/// Thrown if the caller's progress function stops the solve.
 struct Stopped {};
 
-/// What slipstick_message() gives to the calling thread from now on, cut to its length. Does not allocate.
+/// Sets the calling thread's message for slipstick_message(), cut to its length. Does not allocate.
 void set_message(const char* message) noexcept;
 const char* message() noexcept;
 
 /// The status of the exception being handled, which becomes the message.
 int status_of_exception() noexcept;
 
-/// As long as it lives, the calling thread, and those that it starts, read numbers as C writes them, whatever
-/// the caller's locale, and no floating-point exception is trapped, whatever the caller traps.
+/// During its life the calling thread, and the threads that it starts, read numbers in the C locale, and
+/// floating-point exceptions are not trapped, whatever the caller has set.
 class PlainNumbers {
  public:
   PlainNumbers() noexcept;
@@ -36,8 +36,7 @@ class PlainNumbers {
   std::fenv_t traps_{};
 };
 
-/// The status that the work returns, SLIPSTICK_OK if it returns none, or that of the exception that it
-/// throws.
+/// Returns the status of the work (SLIPSTICK_OK if it is void), or the status of its exception.
 template <class Work>
 int guarded(const Work& work) noexcept {
   const PlainNumbers plain;

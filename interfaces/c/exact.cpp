@@ -16,7 +16,7 @@ using analytic::Profile;
 using analytic::TorsionState;
 
 using StateAt = TorsionState (*)(double, const Profile&);
-/// By enum slipstick_quantity: the quantities that can be given, and those that are members of a state.
+/// Numbers of enum slipstick_quantity: quantities that can be given, and members of a state.
 constexpr std::array<StateAt, 5> kStateAt{analytic::from_moment_ratio, analytic::from_moment_deficit,
                                           analytic::from_stick_ratio, analytic::from_stick_complement,
                                           analytic::from_twist};
@@ -31,14 +31,14 @@ StateAt state_by(int given) {
   return kStateAt[static_cast<std::size_t>(given)];
 }
 
-/// C's array; one of no elements may be null.
+/// An array from C; it may be null if it has no elements.
 template <class Value>
 std::span<Value> array(Value* values, std::size_t count, const char* name) {
   if (count > 0) require(values, name);
   return {values, count};
 }
 
-/// results[i] = function(values[i]); an error says which value it was.
+/// results[i] = function(values[i]); an error names the index of the value.
 template <class Result, class Function>
 void for_each(std::span<const double> values, const char* name, std::span<Result> results,
               const Function& function) {
@@ -79,7 +79,7 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
-/// Does the work with the profile of this name.
+/// Calls the work with the profile of this name.
 template <class Work>
 int with_profile(const char* name, const Work& work) noexcept {
   return guarded([&] {

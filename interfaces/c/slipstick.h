@@ -1,14 +1,15 @@
-/* slipstick: the elastic torsional contact with slip and stick, exact and numerical, for programs in any
- * language.
+/* slipstick: exact and numerical solutions of the elastic torsional contact with slip and stick, for programs
+ * in any language.
  *
- * Functions that return an int return one of enum slipstick_status, and slipstick_message() says the rest in
- * words. Arrays are the caller's, of as many doubles as said; what the library hands out belongs to it until
- * slipstick_solution_free(). Every function may be called from several threads at the same time; one solution
- * by as many as read it. No exception leaves a function. Texts are UTF-8 and end with a zero.
+ * A function with the result int returns a value of enum slipstick_status; slipstick_message() returns the
+ * message of an error. The caller owns the arrays that it passes; the library owns the arrays and texts that
+ * it returns, until slipstick_solution_free(). All functions may be called by several threads at the same
+ * time, and several threads may read one solution. No exception leaves a function. Texts are UTF-8 and end
+ * with a zero byte.
  *
- * Exact states are dimensionless: lengths over the contact radius a, moments over mu W a, the twist as
- * G a^2 phi/(mu W) with 1/G = 1/G_1 + 1/G_2 of the two bodies, tractions over mu p0, energies over (mu
- * W)^2/(G a). Solutions of scenes are in SI units, angles in rad. */
+ * Exact states are dimensionless: lengths are divided by the contact radius a, moments by mu W a, tractions by
+ * mu p0, energies by (mu W)^2/(G a); the twist is G a^2 phi/(mu W), with 1/G = 1/G_1 + 1/G_2 of the two
+ * bodies. Solutions of scenes are in SI units, angles in rad. */
 #ifndef SLIPSTICK_H
 #define SLIPSTICK_H
 
@@ -20,22 +21,22 @@ extern "C" {
 
 enum slipstick_status {
   SLIPSTICK_OK = 0,
-  SLIPSTICK_NOT_CONVERGED = 1, /* there is a solution, and it says why it is not to be trusted */
-  SLIPSTICK_BAD_INPUT = 2,     /* the message names what is wrong, and what is allowed */
-  SLIPSTICK_STOPPED = 3,       /* the caller's progress function asked for it */
+  SLIPSTICK_NOT_CONVERGED = 1, /* there is a solution; the message says what it did not reach */
+  SLIPSTICK_BAD_INPUT = 2,     /* the message names the mistake and the allowed values */
+  SLIPSTICK_STOPPED = 3,       /* the caller's progress function stopped the solve */
   SLIPSTICK_NO_MEMORY = 4,
-  SLIPSTICK_FAILED = 5 /* threads that cannot start; anything else: a mistake of the library */
+  SLIPSTICK_FAILED = 5 /* a thread could not start, or a mistake in the library */
 };
 
-/* "1.0.0", as SemVer has it */
+/* the version by SemVer, for example "1.0.0" */
 const char* slipstick_version(void);
 
-/* What the calling thread's last call that did not return SLIPSTICK_OK had to say; at most 4,095 bytes. */
+/* The message of the calling thread's last call that did not return SLIPSTICK_OK; at most 4,095 bytes. */
 const char* slipstick_message(void);
 
 /* Exact states of an axisymmetric contact in torsion, without a grid.
  *
- * A profile is its pressure: "hertz" (sphere), "cone", "flat_punch", "power:N" (gap like r^N),
+ * A profile describes its pressure: "hertz" (sphere), "cone", "flat_punch", "power:N" (gap like r^N),
  * "rounded_punch:B" (flat out to B = b/a), "file:P.csv" (columns radius, pressure). */
 
 enum slipstick_quantity {
@@ -44,18 +45,18 @@ enum slipstick_quantity {
   SLIPSTICK_STICK_RATIO = 2,       /* a_s/a, in (0, 1] */
   SLIPSTICK_STICK_COMPLEMENT = 3,  /* 1 - a_s/a, in [0, 1) */
   SLIPSTICK_TWIST = 4,             /* G a^2 phi/(mu W), from 0 */
-  SLIPSTICK_MOMENT = 5,            /* M/(mu W a): a result only, as those that follow */
+  SLIPSTICK_MOMENT = 5,            /* M/(mu W a); this and the following are results only */
   SLIPSTICK_TANGENT_STIFFNESS = 6, /* (dM/dphi)/(G a^3) */
   SLIPSTICK_ENERGY_LOST = 7        /* in a cycle between M and -M, over (mu W)^2/(G a) */
 };
 
 /* results[i]: the quantity `wanted` of the state of first loading at which the quantity `given` (0 to 4) is
- * values[i]. Both arrays have n numbers; they may be the same one. A value out of range, or NaN, ends the
- * call; the message has its index, and results after it are as they were. */
+ * values[i]. Both arrays have n numbers; they may be the same one. A value that is NaN or out of range
+ * ends the call; the message gives its index, and results after it are unchanged. */
 int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted,
                     double* results);
 
-/* All but the energy at once. */
+/* All quantities except the energy. */
 typedef struct slipstick_state {
   double moment_ratio;
   double moment_deficit;
@@ -68,40 +69,40 @@ typedef struct slipstick_state {
 int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
                            slipstick_state* states);
 
-/* results[i]: the traction q/(mu p0) around the axis at radius r/a = radii[i] in [0, 1], of the state at
- * which `given` is `value`. Infinite at the edge of a flat punch: that radius is refused. */
+/* results[i]: the traction q/(mu p0) around the axis at radius r/a = radii[i] in [0, 1], for the state at
+ * which `given` is `value`. The edge of a flat punch, where it is infinite, is refused. */
 int slipstick_exact_traction(const char* profile, int given, double value, size_t n, const double* radii,
                              double* results);
 
-/* results[i]: p/p0 at radius r/a = radii[i] in [0, 1]; infinite where the profile's pressure is. */
+/* results[i]: p/p0 at radius r/a = radii[i] in [0, 1]; infinite if the profile's pressure is. */
 int slipstick_exact_pressure(const char* profile, size_t n, const double* radii, double* results);
 
-/* What a profile needs beside its shape. */
+/* Dimensionless constants of a profile. */
 typedef struct slipstick_profile {
   double load;         /* W/(p0 a^2) */
   double moment_limit; /* M_lim/(mu W a): 3 pi/16 for a sphere */
   double
-      full_stick; /* M/M_lim up to which nothing slips: 0 but for a pressure that is infinite at the edge */
+      full_stick; /* M/M_lim below which nothing slips: 0 unless the pressure is infinite at the edge */
 } slipstick_profile;
 int slipstick_exact_profile(const char* profile, slipstick_profile* result);
 
-/* A contact somewhere along a history of moments, at constant normal load. */
+/* The state of a contact after a history of moments, at constant normal load. */
 typedef struct slipstick_cycle_state {
   double moment_ratio;      /* M/M_lim, signed */
   double moment;            /* M/(mu W a) */
   double twist;             /* G a^2 phi/(mu W) */
   double stick_ratio;       /* front of the newest branch's slip, over a */
-  double tangent_stiffness; /* (dM/dphi)/(G a^3) on going on */
+  double tangent_stiffness; /* (dM/dphi)/(G a^3) of further loading */
   double dissipated;        /* since the first loading began, over (mu W)^2/(G a) */
 } slipstick_cycle_state;
 
-/* states[i]: after the moments have gone from none through moment_ratios[0] to moment_ratios[i], each in (-1,
- * 1). */
+/* states[i]: the state after the moments moment_ratios[0] to moment_ratios[i], each in (-1, 1), starting from
+ * zero. */
 int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
                             slipstick_cycle_state* states);
 
-/* The curve through these turning points, with so many points on each branch, closer towards its ends: the
- * unloaded state first, n * points_per_branch + 1 states in all. */
+/* The curve through these turning points, from the unloaded state: n * points_per_branch + 1 states, which are
+ * closer to each other near the ends of a branch. */
 int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
                           size_t points_per_branch, slipstick_cycle_state* states);
 
@@ -109,7 +110,7 @@ int slipstick_exact_curve(const char* profile, size_t n, const double* turning_p
 int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
                                      size_t n_radii, const double* radii, double* results);
 
-/* The contact that a normal load makes, in SI units. shape: "hertz": sphere radius; "cone": slope;
+/* The contact under a normal load, in SI units. shape: "hertz": sphere radius; "cone": slope;
  * "flat_punch": radius; "power:N": the gap's coefficient; "rounded_punch": flat radius, corner radius. */
 typedef struct slipstick_indentation {
   double contact_radius;     /* a, m */
@@ -121,47 +122,46 @@ int slipstick_exact_indentation(const char* profile, double load, double effecti
 
 /* Scenes, solved on a grid or exactly. */
 
-/* Called now and then by the thread that solves, for the pressure and then for the tractions: iterations or
- * applications so far, and what the stopping test sees. Not zero: the solve stops. It must not leave by an
- * exception or longjmp. */
+/* The solving thread calls it during the solve of the pressure and then of the tractions, with the number of
+ * iterations or applications and the value of the stopping test. A result other than 0 stops the solve. The
+ * function must not throw, nor leave by longjmp. */
 typedef int (*slipstick_progress)(int iteration, double change, void* user);
 
 /* A scene's answer. */
 typedef struct slipstick_solution slipstick_solution;
 
-/* Solves a scene (docs/reference/scene.md). scene: its text (TOML), and `file` the name under which messages
- * speak of it and where its relative paths begin (NULL: "scene"); or NULL, and `file` is read. overrides:
- * `n_overrides` texts "key=value". accuracy: the relative error of the twist that is asked for, for which
- * cells, tolerance and model are then chosen; 0: the scene is solved as it stands. progress may be NULL.
- * *solution is NULL unless SLIPSTICK_OK or SLIPSTICK_NOT_CONVERGED (of an accuracy: not reached) is returned.
- */
+/* Solves a scene (docs/reference/scene.md). scene: its text (TOML); `file` is then its name in messages, to
+ * which its paths are relative (NULL: "scene"). If scene is NULL, `file` is read. overrides: `n_overrides` texts
+ * "key=value". accuracy: the relative error of the twist to reach, by a choice of cells, tolerance and model;
+ * 0: the scene is solved unchanged. progress may be NULL. *solution is NULL unless the status is SLIPSTICK_OK
+ * or SLIPSTICK_NOT_CONVERGED (which also means that the accuracy was not reached). */
 int slipstick_solve(const char* scene, const char* file, size_t n_overrides, const char* const* overrides,
                     double accuracy, slipstick_progress progress, void* user, slipstick_solution** solution);
-void slipstick_solution_free(slipstick_solution* solution); /* NULL: nothing */
+void slipstick_solution_free(slipstick_solution* solution); /* NULL is allowed */
 
-/* A number of the result by its path, as "twist_angle" or "steps[3].traction_error.l2":
- * docs/reference/results.md. One that does not exist is NaN and SLIPSTICK_BAD_INPUT, and the message has the
- * reason. */
+/* A number of the result by its path, for example "twist_angle" or "steps[3].traction_error.l2":
+ * docs/reference/results.md. For a number that does not exist, value is NaN, the status SLIPSTICK_BAD_INPUT,
+ * and the message gives the reason. */
 int slipstick_solution_number(const slipstick_solution* solution, const char* path, double* value);
 
-/* The whole result as JSON, and as the program prints it. */
+/* The whole result as JSON, and as text like the program's output. */
 const char* slipstick_solution_json(const slipstick_solution* solution);
 const char* slipstick_solution_text(const slipstick_solution* solution);
 
-/* Cells of the grid along x1 and x2, and their size in m. None of an exact answer without fields. */
+/* Cells of the grid along x1 and x2, and their size in m. An exact answer without fields has none. */
 int slipstick_solution_grid(const slipstick_solution* solution, size_t cells[2], double cell_size[2]);
 
 /* A field: one number a cell, cell (i, j) at i * cells[1] + j. x1, x2 (m), pressure, q1, q2 (Pa, on the lower
  * body), slip1, slip2 (m, of the last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened,
- * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (where known); of an exact answer no slips. Valid until
- * the solution is freed. */
+ * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (if known); an exact answer has no slips. Valid until the
+ * solution is freed. */
 int slipstick_solution_field(const slipstick_solution* solution, const char* name, const double** values,
                              size_t* count);
 
 /* The name of field number `index`, counted from 0; NULL beyond the last. */
 const char* slipstick_solution_field_name(const slipstick_solution* solution, size_t index);
 
-/* Writes all fields, where there is pressure: .csv, .h5, .vti. */
+/* Writes all fields of the cells with pressure: .csv, .h5, .vti. */
 int slipstick_solution_write(const slipstick_solution* solution, const char* file);
 
 #ifdef __cplusplus
