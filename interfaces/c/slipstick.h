@@ -7,8 +7,8 @@
  * time, and several threads may read one solution. No exception leaves a function. Texts are UTF-8 and end
  * with a zero byte.
  *
- * Exact states are dimensionless: lengths are divided by the contact radius a, moments by mu W a, tractions by
- * mu p0, energies by (mu W)^2/(G a); the twist is G a^2 phi/(mu W), with 1/G = 1/G_1 + 1/G_2 of the two
+ * Exact states are dimensionless: lengths are divided by the contact radius a, moments by mu W a, tractions
+ * by mu p0, energies by (mu W)^2/(G a); the twist is G a^2 phi/(mu W), with 1/G = 1/G_1 + 1/G_2 of the two
  * bodies. Solutions of scenes are in SI units, angles in rad. */
 #ifndef SLIPSTICK_H
 #define SLIPSTICK_H
@@ -81,8 +81,7 @@ int slipstick_exact_pressure(const char* profile, size_t n, const double* radii,
 typedef struct slipstick_profile {
   double load;         /* W/(p0 a^2) */
   double moment_limit; /* M_lim/(mu W a): 3 pi/16 for a sphere */
-  double
-      full_stick; /* M/M_lim below which nothing slips: 0 unless the pressure is infinite at the edge */
+  double full_stick;   /* M/M_lim below which nothing slips: 0 unless the pressure is infinite at the edge */
 } slipstick_profile;
 int slipstick_exact_profile(const char* profile, slipstick_profile* result);
 
@@ -101,8 +100,8 @@ typedef struct slipstick_cycle_state {
 int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
                             slipstick_cycle_state* states);
 
-/* The curve through these turning points, from the unloaded state: n * points_per_branch + 1 states, which are
- * closer to each other near the ends of a branch. */
+/* The curve through these turning points, from the unloaded state: n * points_per_branch + 1 states, which
+ * are closer to each other near the ends of a branch. */
 int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
                           size_t points_per_branch, slipstick_cycle_state* states);
 
@@ -131,10 +130,10 @@ typedef int (*slipstick_progress)(int iteration, double change, void* user);
 typedef struct slipstick_solution slipstick_solution;
 
 /* Solves a scene (docs/reference/scene.md). scene: its text (TOML); `file` is then its name in messages, to
- * which its paths are relative (NULL: "scene"). If scene is NULL, `file` is read. overrides: `n_overrides` texts
- * "key=value". accuracy: the relative error of the twist to reach, by a choice of cells, tolerance and model;
- * 0: the scene is solved unchanged. progress may be NULL. *solution is NULL unless the status is SLIPSTICK_OK
- * or SLIPSTICK_NOT_CONVERGED (which also means that the accuracy was not reached). */
+ * which its paths are relative (NULL: "scene"). If scene is NULL, `file` is read. overrides: `n_overrides`
+ * texts "key=value". accuracy: the relative error of the twist to reach, by a choice of cells, tolerance and
+ * model; 0: the scene is solved unchanged. progress may be NULL. *solution is NULL unless the status is
+ * SLIPSTICK_OK or SLIPSTICK_NOT_CONVERGED (which also means that the accuracy was not reached). */
 int slipstick_solve(const char* scene, const char* file, size_t n_overrides, const char* const* overrides,
                     double accuracy, slipstick_progress progress, void* user, slipstick_solution** solution);
 void slipstick_solution_free(slipstick_solution* solution); /* NULL is allowed */
@@ -153,8 +152,8 @@ int slipstick_solution_grid(const slipstick_solution* solution, size_t cells[2],
 
 /* A field: one number a cell, cell (i, j) at i * cells[1] + j. x1, x2 (m), pressure, q1, q2 (Pa, on the lower
  * body), slip1, slip2 (m, of the last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened,
- * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (if known); an exact answer has no slips. Valid until the
- * solution is freed. */
+ * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (if known); an exact answer has no slips. Valid until
+ * the solution is freed. */
 int slipstick_solution_field(const slipstick_solution* solution, const char* name, const double** values,
                              size_t* count);
 
