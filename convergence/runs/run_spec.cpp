@@ -49,7 +49,7 @@ std::string complaint_of_file(const std::string& message, const std::vector<std:
 
 PreparedRun prepare_run(const RunSpec& spec) {
   PreparedRun run{.spec = spec,
-                  .scene = seen_as(solver::read_scene(spec.scene, spec.overrides), spec.variant),
+                  .scene = transformed(solver::read_scene(spec.scene, spec.overrides), spec.variant),
                   .cache_key = {},
                   .name = {}};
   const std::string answer_depends_on = cache_key(spec, run.scene);

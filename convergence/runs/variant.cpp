@@ -108,33 +108,34 @@ void exchange(Scene& scene) {
   }
 }
 
-void take_two_threads(Scene& scene) { scene.threads = 2; }
+void use_two_threads(Scene& scene) { scene.threads = 2; }
 
-struct View {
+struct Transformation {
   Variant variant;
   const char* word;
-  void (*see)(Scene&);
+  void (*apply)(Scene&);
 };
-constexpr std::array kViews{View{Variant::mirrored, "mirrored", mirror},
-                            View{Variant::turned, "turned", turn},
-                            View{Variant::shifted, "shifted", shift},
-                            View{Variant::in_other_units, "in_other_units", measure_in_millimetres},
-                            View{Variant::exchanged, "exchanged", exchange},
-                            View{Variant::two_threads, "two_threads", take_two_threads}};
-static_assert(kViews.size() == kVariants.size());
+constexpr std::array kTransformations{
+    Transformation{Variant::mirrored, "mirrored", mirror},
+    Transformation{Variant::turned, "turned", turn},
+    Transformation{Variant::shifted, "shifted", shift},
+    Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
+    Transformation{Variant::exchanged, "exchanged", exchange},
+    Transformation{Variant::two_threads, "two_threads", use_two_threads}};
+static_assert(kTransformations.size() == kVariants.size());
 
 }  // namespace
 
 std::string to_string(Variant variant) {
-  for (const View& view : kViews) {
-    if (view.variant == variant) return view.word;
+  for (const Transformation& each : kTransformations) {
+    if (each.variant == variant) return each.word;
   }
   return "none";
 }
 
 Variant variant_of(const std::string& word) {
-  for (const View& view : kViews) {
-    if (view.word == word) return view.variant;
+  for (const Transformation& each : kTransformations) {
+    if (each.word == word) return each.variant;
   }
   if (word == to_string(Variant::none)) return Variant::none;
   throw std::invalid_argument(word + " is no variant");
@@ -159,9 +160,9 @@ std::string why_not(const Scene& scene, Variant variant) {
   return "";
 }
 
-Scene seen_as(Scene scene, Variant variant) {
-  for (const View& view : kViews) {
-    if (view.variant == variant) view.see(scene);
+Scene transformed(Scene scene, Variant variant) {
+  for (const Transformation& each : kTransformations) {
+    if (each.variant == variant) each.apply(scene);
   }
   return scene;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
@@ -28,7 +29,7 @@ class HardFile : public ScratchFolder {
   static std::string family(const std::string& rest) {
     return "[[family]]\nname = 'small'\nwhy = 'made up'\nscene = '" SLIPSTICK_SCENES "/paper.toml'\n" + rest;
   }
-  /// What `hard` says of such families.
+  /// The result of `hard` for such families.
   Json run(const std::string& families, int code, std::vector<std::string> options = {}) const {
     std::vector<std::string> words{SLIPSTICK_PROGRAM, "hard", write(families), "--output", folder_ / "kept",
                                    "--json",          "-",    "--quiet"};
@@ -71,7 +72,7 @@ TEST(Variant, ComesBack) {
     for (const auto& [variant, times] :
          {std::pair{Variant::mirrored, 2}, {Variant::exchanged, 2}, {Variant::turned, 4}}) {
       solver::Scene seen = scene;
-      for (int i = 0; i < times; ++i) seen = seen_as(seen, variant);
+      for (int i = 0; i < times; ++i) seen = transformed(seen, variant);
       const double angle = seen.surfaces[0].angle - scene.surfaces[0].angle;
       EXPECT_NEAR(std::remainder(angle, 2.0 * std::numbers::pi), 0.0, 1e-14) << name;
       EXPECT_EQ(seen.surfaces[0].at, scene.surfaces[0].at) << name;
@@ -87,7 +88,7 @@ TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
   solver::Scene scene = example("paper");
   scene.cells = {64, 48};
   scene.extent = {1.0e-3, 2.4e-3};
-  const solver::Scene seen = seen_as(scene, Variant::shifted);
+  const solver::Scene seen = transformed(scene, Variant::shifted);
   for (std::size_t i = 0; i < 2; ++i) {
     const double cell = (*scene.extent)[i] / static_cast<double>(scene.cells[i]);
     EXPECT_NEAR((*seen.extent)[i] / static_cast<double>(seen.cells[i]) / cell, 1.0, 1e-14);
@@ -102,66 +103,71 @@ TEST(Variant, IsRefusedWhereItWouldBeAnotherContact) {
   EXPECT_EQ(why_not(example("rough_sphere"), Variant::exchanged), "");
   EXPECT_NE(why_not(example("mindlin"), Variant::shifted), "");
   EXPECT_EQ(why_not(example("paper"), Variant::shifted), "");
-  EXPECT_THROW(seen_as(example("paper"), Variant::shifted), std::invalid_argument);  // without its extent
+  EXPECT_THROW(transformed(example("paper"), Variant::shifted), std::invalid_argument);  // without its extent
   EXPECT_THROW(variant_of("upside_down"), std::invalid_argument);
 }
 
-Json made_result(double error, double uncertainty, double gap = 1e-9) {
-  return {{"status", "converged"},
-          {"method", "coulomb"},
-          {"tolerance", 1e-8},
-          {"twist_error", error},
-          {"resolved", {{"uncertainty", uncertainty}}},
-          {"certificate",
-           {{"gap", gap}, {"rounding", 1e-14}, {"moment", 1e-15}, {"force", 0.0}, {"friction_bound", -1.0}}}};
+SolveRecord made_record(double error, double uncertainty, double gap = 1e-9) {
+  SolveRecord record;
+  record.status = RunStatus::converged;
+  record.problem.method = "coulomb";
+  record.problem.tolerance = 1e-8;
+  record.end.errors.twist = {error};
+  record.end.resolution.uncertainty = {uncertainty};
+  record.end.certificate = {
+      .gap = {gap}, .rounding = {1e-14}, .moment = {1e-15}, .force = {0.0}, .friction_bound = {-1.0}};
+  return record;
 }
 
-TEST(HardJudgement, BelievesAnAnswerWithinWhatItSays) {
-  EXPECT_EQ(judge_alone(made_result(0.009, 0.01)).verdict, HardVerdict::certified);
-  EXPECT_EQ(judge_alone(made_result(-0.009, 0.01)).verdict, HardVerdict::certified);
+SolveRecord without_answer(RunStatus status, const std::string& message) {
+  SolveRecord record;
+  record.status = status;
+  record.message = message;
+  return record;
+}
+
+TEST(HardJudgement, BelievesAnAnswerWithinItsUncertainty) {
+  EXPECT_EQ(judge_alone(made_record(0.009, 0.01)).verdict, HardVerdict::certified);
+  EXPECT_EQ(judge_alone(made_record(-0.009, 0.01)).verdict, HardVerdict::certified);
   for (const double error : {0.011, -0.011}) {
-    const JudgedCase judged = judge_alone(made_result(error, 0.01));
+    const JudgedCase judged = judge_alone(made_record(error, 0.01));
     EXPECT_EQ(judged.verdict, HardVerdict::wrong);
     EXPECT_THAT(judged.reason, AllOf(HasSubstr("0.011"), HasSubstr("0.01")));
   }
 }
 
-// An infinite uncertainty is one that is explained.
-TEST(HardJudgement, WantsAnUncertaintyOrWhyThereIsNone) {
-  Json result = made_result(3.0, 0.01);
-  result["resolved"] = {{"uncertainty", nullptr},
-                        {"uncertainty_reason", "the stick area lies within a cell"}};
-  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::certified);
-  for (const Json& resolved : {Json::object(), Json({{"uncertainty", nullptr}})}) {
-    result["resolved"] = resolved;
-    EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
-  }
-  result.erase("resolved");
-  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
+// An infinite uncertainty has a reason.
+TEST(HardJudgement, RequiresAnUncertaintyOrItsReason) {
+  SolveRecord record = made_record(3.0, 0.01);
+  record.end.resolution.uncertainty = {.why_missing = "the stick area lies within a cell"};
+  EXPECT_EQ(judge_alone(record).verdict, HardVerdict::certified);
+  record.end.resolution.uncertainty = {};
+  EXPECT_EQ(judge_alone(record).verdict, HardVerdict::wrong);
 }
 
 TEST(HardJudgement, HoldsACertificateToItsPromise) {
-  EXPECT_EQ(judge_alone(made_result(0.0, 0.01, 2e-8)).verdict, HardVerdict::wrong);
-  Json result = made_result(0.0, 0.01, 2e-8);
-  result["certificate"]["rounding"] = 3e-8;  // no gap below can be computed
-  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::certified);
-  result["certificate"]["rounding"] = nullptr;  // then the tolerance alone counts
-  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
-  for (const char* member : {"gap", "moment", "force", "friction_bound"}) {
-    for (const Json& bad : {Json(1e-6), Json()}) {
-      result = made_result(0.0, 0.01);
-      result["certificate"][member] = bad;
-      EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong) << member << bad;
+  EXPECT_EQ(judge_alone(made_record(0.0, 0.01, 2e-8)).verdict, HardVerdict::wrong);
+  SolveRecord record = made_record(0.0, 0.01, 2e-8);
+  record.end.certificate.rounding = {3e-8};  // no smaller gap can be computed
+  EXPECT_EQ(judge_alone(record).verdict, HardVerdict::certified);
+  record.end.certificate.rounding = {};  // then only the tolerance counts
+  EXPECT_EQ(judge_alone(record).verdict, HardVerdict::wrong);
+  for (const auto member : {&CertificateRecord::gap, &CertificateRecord::moment, &CertificateRecord::force,
+                            &CertificateRecord::friction_bound}) {
+    for (const Number& bad : {Number{1e-6}, Number{}}) {
+      record = made_record(0.0, 0.01);
+      record.end.certificate.*member = bad;
+      EXPECT_EQ(judge_alone(record).verdict, HardVerdict::wrong) << bad.value;
     }
   }
 }
 
-TEST(HardJudgement, TellsRefusedFromNotConvergedFromDead) {
-  EXPECT_EQ(judge_alone({{"status", "refused"}, {"message", "beyond the limit"}}).verdict,
+TEST(HardJudgement, DistinguishesRefusedNotConvergedAndFailed) {
+  EXPECT_EQ(judge_alone(without_answer(RunStatus::refused, "beyond the limit")).verdict,
             HardVerdict::refused);
-  EXPECT_EQ(judge_alone({{"status", "refused"}, {"message", ""}}).verdict, HardVerdict::wrong);
-  EXPECT_EQ(judge_alone({{"status", "failed"}, {"message", "signal 9"}}).verdict, HardVerdict::wrong);
-  EXPECT_EQ(judge_alone({{"status", "not_converged"}, {"message", "rounding"}}).verdict,
+  EXPECT_EQ(judge_alone(without_answer(RunStatus::refused, "")).verdict, HardVerdict::wrong);
+  EXPECT_EQ(judge_alone(without_answer(RunStatus::failed, "signal 9")).verdict, HardVerdict::wrong);
+  EXPECT_EQ(judge_alone(without_answer(RunStatus::not_converged, "rounding")).verdict,
             HardVerdict::not_converged);
 }
 
@@ -181,28 +187,34 @@ TEST(HardJudgement, HoldsAnAnswerToThoseOnFinerMeshes) {
   }
 }
 
-TEST(HardJudgement, LooksAtTheNumberThatTheUncertaintyIsOf) {
-  Json result{{"twist_angle", -2e-3}, {"displacement", {3e-6, 4e-6}}, {"force", {0.0, 0.0}}};
+TEST(HardJudgement, TakesTheNumberThatIsUncertain) {
+  SolveRecord record;
+  record.end.loads.twist_angle = {-2e-3};
+  record.end.loads.displacement.values = {3e-6, 4e-6};
+  record.end.loads.force.values = {0.0, 0.0};
   const auto value_of = [&](const char* number) {
-    result["resolved"]["number"] = number;
-    return main_value(result);
+    record.end.resolution.number = number;
+    return main_value(record);
   };
   EXPECT_EQ(value_of("twist_angle"), -2e-3);
   EXPECT_DOUBLE_EQ(value_of("displacement"), 5e-6);
-  EXPECT_TRUE(std::isnan(value_of("force")));   // nothing to be relative to
+  EXPECT_TRUE(std::isnan(value_of("force")));   // zero: no relative error
   EXPECT_TRUE(std::isnan(value_of("moment")));  // missing
-  result["resolved"]["absolute"] = 0.0;         // no load acts: what moves is rounding
+  record.end.resolution.absolute = {0.0};       // no load acts: the motion is rounding
   EXPECT_TRUE(std::isnan(value_of("twist_angle")));
 }
 
-// Away from the limit 1e-6; where 1e-5 of the load is missing to it, what a tolerance of 1e-8 is of that.
-TEST(HardJudgement, AllowsMoreOfAnAnswerNextToTheLimit) {
-  const auto allowed = [](const Json& factor) {
-    return same_answer({{"tolerance", 1e-8}, {"limit", {{"factor", factor}}}});
+// 1e-6 far from the limit; where 1e-5 of the load is missing to it, also the tolerance 1e-8 over that.
+TEST(HardJudgement, AllowsLargerDifferencesNearTheLimit) {
+  const auto allowed = [](double factor) {
+    SolveRecord record;
+    record.problem.tolerance = 1e-8;
+    record.end.loads.limit.factor = {factor};
+    return same_answer(record);
   };
   EXPECT_NEAR(allowed(2.0), 1.01e-6, 1e-12);
   EXPECT_NEAR(allowed(1.0 + 1e-5), 1e-3 + 1e-6, 1e-9);
-  EXPECT_EQ(allowed(nullptr), 1e-6);
+  EXPECT_EQ(allowed(Number().value), 1e-6);
 }
 
 // The distance from the answer on four times the cells.
@@ -223,32 +235,36 @@ TEST_F(HardFile, ProgramComparesWithFinerMeshes) {
   EXPECT_NEAR(row["finer_meshes.change"], std::abs(twists[1] / twists[2] - 1.0), 1e-7);
 }
 
+void set_loads(SolveRecord& record, double twist, double moment, double limit, double radius) {
+  record.end.loads.twist_angle = {twist};
+  record.end.loads.moment = {moment};
+  record.end.loads.moment_limit = {limit};
+  record.end.contact.contact_radius = {radius};
+}
+
 TEST(HardJudgement, ComparesSignsAndUnits) {
-  const Json first{{"twist_angle", 1e-3}, {"moment", 0.02}, {"moment_limit", 0.03}, {"contact_radius", 5e-4}};
-  Json seen = first;
+  SolveRecord first;
+  set_loads(first, 1e-3, 0.02, 0.03, 5e-4);
+  SolveRecord seen = first;
   EXPECT_EQ(variant_difference(first, seen, Variant::turned), 0.0);
   EXPECT_EQ(variant_difference(first, seen, Variant::mirrored), 2.0);
-  seen["twist_angle"] = -1e-3;
-  seen["moment"] = -0.02;
+  set_loads(seen, -1e-3, -0.02, 0.03, 5e-4);
   EXPECT_EQ(variant_difference(first, seen, Variant::mirrored), 0.0);
-  seen = {{"twist_angle", 1e-3}, {"moment", 20.0}, {"moment_limit", 30.0}, {"contact_radius", 0.5}};
+  set_loads(seen, 1e-3, 20.0, 30.0, 0.5);
   EXPECT_LE(variant_difference(first, seen, Variant::in_other_units), 1e-15);
-  seen["moment"] = nullptr;
+  seen.end.loads.moment = {};
   EXPECT_TRUE(std::isnan(variant_difference(first, seen, Variant::in_other_units)));
 }
 
-Json answer_of(const char* method, double twist) {
-  Json answer = made_result(0.0, 0.02);
-  answer.update({{"method", method},
-                 {"twist_angle", twist},
-                 {"moment", 0.02},
-                 {"moment_limit", 0.03},
-                 {"contact_radius", 5e-4},
-                 {"slip_direction", {{"mean", 1e-4}, {"max", 1e-3}}}});
+SolveRecord answer_of(const char* method, double twist) {
+  SolveRecord answer = made_record(0.0, 0.02);
+  answer.problem.method = method;
+  set_loads(answer, twist, 0.02, 0.03, 5e-4);
+  answer.method.slip_direction = {.mean = {1e-4}, .max = {1e-3}};
   return answer;
 }
 
-MethodVerdict beside(const Json& other) {
+MethodVerdict verdict_on(const SolveRecord& other) {
   const ComparedAnswer compared = compare_answer(answer_of("coulomb", 1e-3), other);
   EXPECT_EQ(compared.reason.empty(), compared.verdict == MethodVerdict::agrees);
   return compared.verdict;
@@ -256,42 +272,38 @@ MethodVerdict beside(const Json& other) {
 
 TEST(MethodComparison, AgreesWithinOnePercent) {
   for (const double off : {0.0, 0.009, -0.009}) {
-    EXPECT_EQ(beside(answer_of("paper", (1.0 + off) * 1e-3)), MethodVerdict::agrees) << off;
+    EXPECT_EQ(verdict_on(answer_of("paper", (1.0 + off) * 1e-3)), MethodVerdict::agrees) << off;
   }
   for (const double off : {0.011, -0.011, -2.0}) {
-    EXPECT_EQ(beside(answer_of("paper", (1.0 + off) * 1e-3)), MethodVerdict::other_answer) << off;
+    EXPECT_EQ(verdict_on(answer_of("paper", (1.0 + off) * 1e-3)), MethodVerdict::other_answer) << off;
   }
-  Json nothing = answer_of("paper", 1e-3);
-  nothing["twist_angle"] = nullptr;
-  EXPECT_EQ(beside(nothing), MethodVerdict::other_answer);
+  EXPECT_EQ(verdict_on(answer_of("paper", Number().value)), MethodVerdict::other_answer);
 }
 
-// Slip that is turned counts where it costs energy: where everything sticks, what slips is rounding.
-TEST(MethodComparison, SeesSlipThatDoesNotOpposeTraction) {
-  Json turned = answer_of("paper", 1e-3);
-  turned["certificate"]["gap"] = 1e-4;
-  EXPECT_EQ(beside(turned), MethodVerdict::agrees);
-  turned["slip_direction"]["mean"] = 1.1;
-  EXPECT_EQ(beside(turned), MethodVerdict::other_direction);
-  turned["certificate"]["gap"] = 1e-9;
-  EXPECT_EQ(beside(turned), MethodVerdict::agrees);
-  turned["certificate"]["gap"] = nullptr;
-  EXPECT_EQ(beside(turned), MethodVerdict::other_direction);
+// Turned slip counts where it costs energy; where everything sticks, the slip is rounding.
+TEST(MethodComparison, FindsSlipThatDoesNotOpposeTraction) {
+  SolveRecord turned = answer_of("paper", 1e-3);
+  turned.end.certificate.gap = {1e-4};
+  EXPECT_EQ(verdict_on(turned), MethodVerdict::agrees);
+  turned.method.slip_direction.mean = {1.1};
+  EXPECT_EQ(verdict_on(turned), MethodVerdict::other_direction);
+  turned.end.certificate.gap = {1e-9};
+  EXPECT_EQ(verdict_on(turned), MethodVerdict::agrees);
+  turned.end.certificate.gap = {};
+  EXPECT_EQ(verdict_on(turned), MethodVerdict::other_direction);
 }
 
-TEST(MethodComparison, KeepsWhatTheMethodSaysItself) {
-  EXPECT_EQ(beside({{"status", "refused"}, {"message", "this method knows torsion alone"}}),
-            MethodVerdict::refused);
-  EXPECT_EQ(beside({{"status", "not_converged"}, {"message", "every cell slips"}}),
-            MethodVerdict::not_converged);
-  EXPECT_EQ(beside({{"status", "failed"}, {"message", "signal 11"}}), MethodVerdict::other_answer);
-  Json broken = answer_of("paper", 1e-3);
-  broken["certificate"]["moment"] = 0.1;
-  EXPECT_EQ(beside(broken), MethodVerdict::other_answer);
+TEST(MethodComparison, KeepsTheMethodsOwnStatus) {
+  EXPECT_EQ(verdict_on(without_answer(RunStatus::refused, "only torsion")), MethodVerdict::refused);
+  EXPECT_EQ(verdict_on(without_answer(RunStatus::not_converged, "all slips")), MethodVerdict::not_converged);
+  EXPECT_EQ(verdict_on(without_answer(RunStatus::failed, "signal 11")), MethodVerdict::other_answer);
+  SolveRecord broken = answer_of("paper", 1e-3);
+  broken.end.certificate.moment = {0.1};
+  EXPECT_EQ(verdict_on(broken), MethodVerdict::other_answer);
 }
 
-TEST(MethodComparison, BelievesNothingWithoutACertifiedAnswer) {
-  const Json refused{{"status", "refused"}, {"message", "beyond the limit"}};
+TEST(MethodComparison, AgreesWithNothingWithoutACertifiedAnswer) {
+  const SolveRecord refused = without_answer(RunStatus::refused, "beyond the limit");
   EXPECT_EQ(compare_answer(refused, answer_of("paper", 1e-3)).verdict, MethodVerdict::other_answer);
   EXPECT_EQ(compare_answer(refused, refused).verdict, MethodVerdict::refused);
 }

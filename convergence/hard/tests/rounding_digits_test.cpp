@@ -75,9 +75,9 @@ TEST(RoundingDigits, AreLostNextToTheLimit) {
   const auto digits = [&](const char* ratio) {
     const RunSpec spec{.scene = SLIPSTICK_SCENES "/paper.toml",
                        .overrides = {"grid.cells=[16,16]", std::string("load.moment_ratio=") + ratio}};
-    const Json result = rounding_digits(spec, {.samples = 6}, pool);
-    EXPECT_EQ(result["not_converged"], 0);
-    return result["digits"]["twist_angle"]["digits"].get<double>();
+    const DigitsResult result = rounding_digits(spec, {.samples = 6}, pool);
+    EXPECT_EQ(result.not_converged, 0);
+    return std::ranges::find(result.digits, "twist_angle", &OutputDigits::output)->digits.value;
   };
   EXPECT_GT(digits("0.5"), 11.0);
   EXPECT_LT(digits("0.9999999999"), digits("0.5") - 2.0);

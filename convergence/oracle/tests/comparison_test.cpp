@@ -8,7 +8,8 @@
 
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/make_record.hpp"
+#include "convergence/results/record_text.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
@@ -205,7 +206,8 @@ TEST(Comparison, EllipticPressureFallsWithTheMesh) {
 TEST(Comparison, ResultOfAnEllipseSaysWhatIsExact) {
   const solver::Scene ellipse = example("ellipse", {"grid.cells=[32,16]"});
   const OracleAnswer exact = find_oracle(ellipse);
-  const Json result = solve_result(ellipse, solver::solve(ellipse), exact);
+  const SolveRecord record = make_record(ellipse, solver::solve(ellipse), exact);
+  const Json result = to_json(record);
   for (const char* key : {"contact_radius", "peak_pressure", "approach", "moment_limit", "moment"}) {
     EXPECT_TRUE(result["exact"][key].is_number()) << key;
   }
@@ -226,9 +228,9 @@ TEST(Comparison, ResultOfAnEllipseSaysWhatIsExact) {
     EXPECT_TRUE(result["traction_error"][region]["l1"].is_null()) << region;
   }
   EXPECT_TRUE(result["pressure_error"]["l1"].is_number());
-  EXPECT_NE(solve_text(result).find("exact answer     normal contact only"), std::string::npos)
-      << solve_text(result);
-  EXPECT_EQ(solve_text(result).find("traction error"), std::string::npos);
+  EXPECT_NE(solve_text(record).find("exact answer     normal contact only"), std::string::npos)
+      << solve_text(record);
+  EXPECT_EQ(solve_text(record).find("traction error"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "analytic/torsion.hpp"
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/record_text.hpp"
+#include "convergence/results/solution_fields.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/field_file.hpp"
 
@@ -26,7 +28,9 @@ solver::Scene exact_scene(const std::string& name, std::vector<std::string> over
   return example(name, overrides);
 }
 
-Json answer(const solver::Scene& scene) { return exact_result(scene, require_oracle(scene), 0.0); }
+SolveRecord record_of(const solver::Scene& scene) { return exact_record(scene, require_oracle(scene), 0.0); }
+
+Json answer(const solver::Scene& scene) { return to_json(record_of(scene)); }
 
 double number(const Json& result, const char* key) { return result[key].get<double>(); }
 
@@ -94,8 +98,9 @@ TEST(ExactModel, SaysThatThereIsNoGrid) {
       EXPECT_TRUE(result[key].is_null()) << key;
       EXPECT_TRUE(result[std::string(key) + "_reason"].is_string()) << key;
     }
-    EXPECT_THAT(exact_text(result), AllOf(HasSubstr(name), HasSubstr("exact solution"), HasSubstr("twist"),
-                                          HasSubstr("left out         the grid")));
+    EXPECT_THAT(solve_text(record_of(exact_scene(name))),
+                AllOf(HasSubstr(name), HasSubstr("exact solution"), HasSubstr("twist"),
+                      HasSubstr("left out         the grid")));
   }
   EXPECT_TRUE(answer(exact_scene("paper"))["peak_pressure"].is_number());
   EXPECT_EQ(answer(exact_scene("cone"))["peak_pressure_reason"], "infinite");

@@ -42,8 +42,8 @@ std::vector<std::string> paths(const Json& result) {
   return found;
 }
 
-/// Whatever an answer depends on is in its key, so that no stale one is taken: the text of the scene and of
-/// each file that it reads, what is changed, how it is rounded and seen, what is asked for beside the result.
+/// The key holds the scene and each file that it reads, overrides, rounding, variant, and further output, so
+/// that no stale answer is used.
 TEST_F(ProcessPoolTest, AKeyHoldsAllThatAnAnswerDependsOn) {
   const std::string flat = "0,0,0\n0,0,0\n0,0,";
   write("heights.csv", flat + "0\n");
@@ -72,17 +72,18 @@ TEST_F(ProcessPoolTest, AKeyHoldsAllThatAnAnswerDependsOn) {
   EXPECT_NE(prepare_run(spec).cache_key, key);
 }
 
-/// There is one way to solve a scene. What it asks for decides whether its result has steps, not how far the
-/// solve came.
+/// There is one way to solve a scene. Its steps decide whether the result has steps, whether the solve
+/// reached them or not.
 TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
   for (const auto& [scene, status] : {std::pair<fs::path, std::string>{kPaper, "converged"},
                                       {history(5000), "converged"},
                                       {history(1), "not_converged"}}) {
-    const Json pooled = ProcessPool(options()).run(RunSpec{scene, {kCells}});
+    const Json pooled = to_json(ProcessPool(options()).run(RunSpec{scene, {kCells}}));
     const ProgramEnd solve = run_program({SLIPSTICK_PROGRAM, "solve", scene, "--set", kCells, "--json", "-"},
                                          {.captured = Captured::output});
     const Json solved = Json::parse(solve.output);
     EXPECT_EQ(paths(pooled), paths(solved));
+    EXPECT_EQ(to_json(from_json(solved)).dump(), solved.dump());
     EXPECT_EQ(pooled["status"], status);
     EXPECT_EQ(pooled["twist_angle"], solved["twist_angle"]);
     EXPECT_EQ(pooled.contains("steps"), scene != kPaper);
@@ -92,8 +93,9 @@ TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
   }
 }
 
-/// A result without what no two solves have in common.
-Json without_times(const Json& result) {
+/// A result without the times and the memory of the solve.
+Json without_times(const SolveRecord& record) {
+  const Json result = to_json(record);
   Json kept = Json::object();
   const Json flat = result.flatten();
   for (const auto& [path, value] : flat.items()) {
@@ -105,7 +107,7 @@ Json without_times(const Json& result) {
   return kept;
 }
 
-/// A worker solves many runs: what came before leaves no trace in a result. Equal runs are computed once.
+/// A worker solves many runs; a result does not depend on earlier ones. Equal runs are computed once.
 TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
   std::vector<RunSpec> specs{
       {.scene = kPaper, .overrides = {kCells}},
@@ -126,7 +128,7 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
   specs.push_back(specs.front());
   ProcessPoolOptions together = options();
   together.jobs = 1;
-  const std::vector<Json> results = ProcessPool(together).run(specs);
+  const std::vector<SolveRecord> results = ProcessPool(together).run(specs);
   for (std::size_t i = 0; i < specs.size(); ++i) {
     ProcessPoolOptions apart = options();
     apart.folder = folder_ / "apart" / std::to_string(i);
@@ -138,38 +140,42 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
 TEST_F(ProcessPoolTest, ARefusedRunHasNoFieldsAndSaysWhy) {
   const RunSpec spec{
       .scene = kPaper, .overrides = {kCells, "grid.extent=[1e-4,1e-4]"}, .fields = folder_ / "none.csv"};
-  const Json refused = ProcessPool(options()).run(spec);
-  EXPECT_EQ(refused["status"], "refused");
-  EXPECT_THAT(refused["message"].get<std::string>(), testing::HasSubstr("grid.extent"));
+  const SolveRecord refused = ProcessPool(options()).run(spec);
+  EXPECT_EQ(refused.status, RunStatus::refused);
+  EXPECT_THAT(refused.message, testing::HasSubstr("grid.extent"));
   EXPECT_FALSE(fs::exists(spec.fields));
-  EXPECT_THROW(ProcessPool(options()).run(RunSpec{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
+  const RunSpec misspelled{kPaper, {"load.moment_ration=0.5"}};
+  EXPECT_THROW(ProcessPool(options()).run(misspelled), solver::InputError);
+  const std::vector<SolveRecord> both = ProcessPool(options()).run_or_refuse({misspelled, spec});
+  EXPECT_EQ(both[0].status, RunStatus::refused);
+  EXPECT_EQ(both[1].message, refused.message);
 }
 
 TEST_F(ProcessPoolTest, ARunWithoutItsFieldsIsNotFinished) {
   RunSpec spec{.scene = kPaper, .overrides = {kCells}, .fields = folder_ / "fields.h5", .profile = true};
   const ProcessPool pool(options());
-  const Json first = pool.run(spec);
+  const SolveRecord first = pool.run(spec);
   EXPECT_GT(fs::file_size(spec.fields), 1000U);
-  EXPECT_FALSE(first["profile"].empty());
-  EXPECT_EQ(pool.run(spec)["seconds"], first["seconds"]);  // no two runs take the same time
+  EXPECT_FALSE(first.profile->empty());
+  EXPECT_EQ(pool.run(spec).seconds(), first.seconds());  // no two runs take the same time
   const std::string fields = read_text(spec.fields);
   fs::resize_file(spec.fields, fields.size() / 2);
-  const Json second = pool.run(spec);
-  EXPECT_NE(second["seconds"], first["seconds"]) << "half of its fields were there";
-  EXPECT_EQ(second["twist_angle"], first["twist_angle"]);
+  const SolveRecord second = pool.run(spec);
+  EXPECT_NE(second.seconds(), first.seconds()) << "half of its fields were there";
+  EXPECT_EQ(second.end.loads.twist_angle.value, first.end.loads.twist_angle.value);
   EXPECT_TRUE(read_text(spec.fields) == fields);
   fs::remove(spec.fields);
-  EXPECT_NE(pool.run(spec)["seconds"], second["seconds"]);
+  EXPECT_NE(pool.run(spec).seconds(), second.seconds());
   EXPECT_TRUE(read_text(spec.fields) == fields);
   spec.profile = false;
-  EXPECT_FALSE(pool.run(spec).contains("profile"));
+  EXPECT_FALSE(pool.run(spec).profile);
 }
 
-/// Who cannot write need not go on: it says what cannot be written, and what is finished stays so.
+/// The message names the file that cannot be written; finished results stay.
 TEST_F(ProcessPoolTest, StopsWhereAResultCannotBeWritten) {
   const ProcessPool pool(options());
   const RunSpec done{.scene = kPaper, .overrides = {kCells}};
-  const Json first = pool.run(done);
+  const SolveRecord first = pool.run(done);
   const auto complaint = [&](const RunSpec& spec) -> std::string {
     try {
       pool.run(spec);
@@ -187,7 +193,7 @@ TEST_F(ProcessPoolTest, StopsWhereAResultCannotBeWritten) {
   fs::create_directories(point / "in the way");
   EXPECT_EQ(complaint(blocked), "") << "a folder in a result's place is put aside";
   EXPECT_TRUE(fs::is_regular_file(point));
-  EXPECT_EQ(pool.run(done)["seconds"], first["seconds"]) << "it was solved again";
+  EXPECT_EQ(pool.run(done).seconds(), first.seconds()) << "it was solved again";
 }
 
 /// Two programs share a folder: one that computes what the other has finished does not take it away.
@@ -206,12 +212,12 @@ TEST_F(ProcessPoolTest, AFinishedResultStaysWhileAnotherProgramComputesIt) {
 
 void handle(int) {}
 
-/// A library leaves the handlers of signals to its host, which says when to stop.
+/// A library does not change its host's signal handlers; the host stops it by a callback.
 TEST_F(ProcessPoolTest, StopsWhereItsHostSaysSo) {
   const auto before = std::signal(SIGINT, handle);
   ProcessPoolOptions stopping = options();
-  bool untouched = false;
-  stopping.interrupted = [&] {
+  static bool untouched = false;
+  stopping.interrupted = [] {
     struct sigaction now {};
     sigaction(SIGINT, nullptr, &now);
     untouched = now.sa_handler == handle;

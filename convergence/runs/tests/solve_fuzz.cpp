@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "convergence/results/exact_result.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/results/record_text.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
@@ -35,12 +35,12 @@ void make_small(solver::Scene& scene) {
 void answer(const solver::Scene& scene) {
   if (scene.model == solver::ModelChoice::exact) {
     const convergence::Oracle oracle = convergence::require_oracle(scene);
-    convergence::exact_text(convergence::exact_result(scene, oracle, 0.0));
+    convergence::solve_text(convergence::exact_record(scene, oracle, 0.0));
     return;
   }
   const convergence::SolvedScene solved = convergence::solve_scene(scene);
   const solver::Solution& found = solved.solution;
-  convergence::solve_text(solved.result);
+  convergence::solve_text(solved.record);
   if (found.status != solver::Status::converged) return;
   if (!std::isfinite(found.twist_angle) || !std::isfinite(found.moment) || !found.pressure.isFinite().all() ||
       !found.traction.isFinite().all()) {
