@@ -41,7 +41,7 @@ def path_of(row, folder):
 
 
 def scene_of(row, folder):
-    """The scene's tables with what the row sets."""
+    """The scene's tables with the row's settings."""
     scene = tomllib.loads(path_of(row, folder).read_text())
     for assignment in row["set"]:
         key, _, text = assignment.partition("=")
@@ -81,7 +81,7 @@ def layer_of(scene):
 
 
 def friction_bound(contact, p, folder):
-    """What friction carries in each cell under a scene's law; folder: of its file."""
+    """The friction bound of each cell under a scene's law; folder: of its file."""
     if "friction_map" in contact:
         factors = np.loadtxt(folder / contact["friction_map"], delimiter=",", ndmin=2)
         return factors * friction_bound({k: v for k, v in contact.items() if k != "friction_map"}, p, folder)
@@ -172,7 +172,7 @@ def fields_of(file, n, h):
 
 
 def rigid_motion(residual, x, y, within):
-    """The translation and turn that a field comes closest to, and what is left of it."""
+    """The rigid motion closest to a field, and the residual."""
     scale = np.hypot(x, y)[within].max() or 1.0
     one, zero = np.ones(within.sum()), np.zeros(within.sum())
     matrix = np.column_stack(
@@ -196,7 +196,7 @@ def moved(elastic, coupling, fields):
 
 
 def audit(row, folder):
-    """What is measured of one case, by name."""
+    """The measured numbers of one case, by name."""
     scene, beside = scene_of(row, folder), path_of(row, folder).parent
     found = {}
     row = row["written"]
@@ -216,7 +216,7 @@ def audit(row, folder):
 
     found["pressure"] = max(0.0, -p.min() / p.max())
     found["load"] = abs(p.sum() * area / load - 1.0)
-    # Hertz's pressure is that of the load on no mesh.
+    # On a mesh Hertz's pressure does not carry exactly the load.
     if not history and not scene["contact"].get("pressure", "solved").startswith("hertz"):
         found["load"] = max(found["load"], abs(p.sum() * area / scene["load"]["normal"] - 1.0))
     found["bound"] = max(0.0, (np.hypot(q1, q2) - bound).max() / bound.max())
@@ -236,7 +236,7 @@ def audit(row, folder):
     if any("layer" in scene[body] for body in ("upper", "lower")):
         return found  # no kernel of a coated body stands here: its exact answers judge it, convergence/oracle/
 
-    # Tractions to displacements; the slip is what no rigid motion explains.
+    # Tractions to displacements; the slip is the residual of the closest rigid motion.
     u1 = elastic.displacement("11", q1) + elastic.displacement("12", q2)
     u2 = elastic.displacement("12", q1) + elastic.displacement("22", q2)
     size = max(np.abs(u1[contact]).max(), np.abs(u2[contact]).max())

@@ -34,7 +34,7 @@ int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostre
 RunCommand add_digits_command(CLI::App& app) {
   const auto request = std::make_shared<DigitsRequest>();
   CLI::App* const command =
-      app.add_subcommand("digits", "Which digits of an answer survive another rounding of every operation");
+      app.add_subcommand("digits", "Count the digits of an answer that do not depend on rounding");
   command->add_option("scene", request->spec.scene, "scene file (TOML)")->required();
   add_set_option(*command, request->spec.overrides, "override a key of the scene");
   command->add_option("--samples", request->options.samples, "solves that are rounded at random")

@@ -54,7 +54,7 @@ def history(draw, friction):
 
 
 def ratio(draw):
-    """From next to nothing to next to the limit."""
+    """From tiny loads to loads near the limit."""
     return draw.choice([10 ** draw.uniform(-6, -1), draw.uniform(0.1, 0.9), 1 - 10 ** draw.uniform(-6, -1)])
 
 
@@ -91,7 +91,7 @@ def as_list(value):
 
 
 def case(program, file, draw):
-    """What is stated and the error, or None where nothing is stated or there is nothing to hold it to."""
+    """The stated uncertainty and the error; None where one of them is not known."""
     file.write_text(scene(draw))
     result = solve(program, file)
     if result and "steps" not in result and result.get("exact") and draw.random() < 0.5:  # a moment that is no ratio

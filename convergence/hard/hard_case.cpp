@@ -63,7 +63,7 @@ const solver::SettingKeys& hard_keys() {
   static const SettingKeys keys{
       {"family", KeyType::tables, "", kRequired, kAny, "Tables `[[family]]`: a scene with keys that vary."},
       {"family.name", KeyType::text, "", kRequired, kAny, "Names the family."},
-      {"family.why", KeyType::text, "", kRequired, kAny, "What makes it hard."},
+      {"family.why", KeyType::text, "", kRequired, kAny, "The reason why it is hard."},
       {"family.scene", KeyType::file, "", kRequired, kAny, "Scene file (TOML), relative to this file."},
       {"family.set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
       {"family.vary", KeyType::tables, "", "none", kAny,

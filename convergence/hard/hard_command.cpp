@@ -77,8 +77,7 @@ RunCommand add_hard_command(CLI::App& app) {
   command->add_option("files", request->files, "files of families of scenes (TOML)")->required();
   add_set_option(*command, request->runs.overrides, "override a key of all scenes");
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
-  command->add_flag("--once", request->once,
-                    "solve each scene as it stands alone, not mirrored, turned, on finer meshes, ...");
+  command->add_flag("--once", request->once, "solve each scene once: no equivalent scenes, no finer meshes");
   command
       ->add_option("--beside", request->methods,
                    "methods, or files of programs (TOML), that solve each scene too, to be compared")

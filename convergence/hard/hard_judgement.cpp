@@ -73,7 +73,7 @@ JudgedNumbers work_of(const SolveRecord& record) {
 
 double or_zero(double size) { return std::isfinite(size) ? size : 0.0; }
 
-/// The elastic energy, of an unloaded state that of its certificate.
+/// The elastic energy; of an unloaded state the energy of its certificate.
 double energy_of(const EndRecord& end) {
   return or_zero(std::fmax(end.energy.elastic, end.certificate.energy.value_or(Number())));
 }
@@ -107,7 +107,7 @@ constexpr std::array kComparedNumbers{
                    no_size},
     ComparedNumber{[](const EndRecord& end) { return end.energy.elastic.value; }, false, true, energy_of}};
 
-/// The number of a variant over that of the scene itself.
+/// Number of the variant / number of the scene itself.
 double factor(const ComparedNumber& number, Variant variant) {
   constexpr double kMillimetres = 1e3;
   if (variant == Variant::mirrored || variant == Variant::exchanged) return number.is_reversed ? -1.0 : 1.0;

@@ -52,8 +52,8 @@ struct MeshReference {
 /// absolute: the stated uncertainty, in the value's unit.
 MeshReference judge_by_finer(double value, double absolute, double twice, double four_times);
 
-/// The largest distance of a variant's numbers from those of the scene itself, see transformed(); NaN where
-/// one has a number that the other lacks.
+/// The largest distance between the numbers of a variant and of the scene itself, see transformed(); NaN
+/// where one has a number that the other lacks.
 double variant_difference(const SolveRecord& record, const SolveRecord& seen, Variant variant);
 
 /// The allowed difference of equal problems in the twist, the moment and energies: 1e-6; near the limit,

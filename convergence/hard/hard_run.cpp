@@ -209,7 +209,7 @@ void add_verdict(Json& json, const Judged& judged) {
   set_known(json, "difference", numbers.difference);
 }
 
-/// The files of fields, and what the loads in them are.
+/// The files of fields, and the numbers that an audit of them needs.
 Json written_json(const HardRow& row) {
   const SolveRecord& record = row.record;
   Json json{{"fields", row.fields.string()},

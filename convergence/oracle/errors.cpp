@@ -15,7 +15,7 @@ double relative_error(double value, double exact) {
   return std::isfinite(exact) ? value / exact - 1.0 : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Length of the difference over that of the exact vector.
+/// |difference| / |exact vector|.
 double relative_difference(const std::array<double, 2>& value, const std::array<double, 2>& exact) {
   return std::hypot(value[0] - exact[0], value[1] - exact[1]) / std::hypot(exact[0], exact[1]);
 }
@@ -67,7 +67,7 @@ std::array<double, 2> shear_at(const Oracle& oracle, double y1, double y2, Size&
   return {-size * (y2 / radius), size * (y1 / radius)};
 }
 
-/// The size of the exact shear traction near its edges, where many values are asked for.
+/// The size of the exact shear traction near its edges, where many values are needed.
 class ShearBesideEdges {
  public:
   ShearBesideEdges(const Oracle& oracle, double reach, double step) : oracle_(oracle) {

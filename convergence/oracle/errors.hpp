@@ -19,8 +19,8 @@ struct FieldError {
   double max;
 };
 
-/// Errors of a traction field, all relative to the whole contact's exact field, so that those of the regions
-/// add up to that of `averaged` (l1; l2 in squares).
+/// Errors of a traction field, all relative to the exact field of the whole contact, so that the errors of
+/// the regions add up to `averaged` (l1; l2 in squares).
 struct TractionError {
   FieldError at_centres;  ///< against the exact values at cell centres
   FieldError
@@ -69,7 +69,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle);
 
 // ---------------------------------------------------------------- fields at their edges (sharpened.cpp)
 
-/// What a cut cell has at its centre, Pa.
+/// Values at the centre of a cut cell, Pa.
 struct SharpenedCell {
   solver::Index cell;
   double pressure;

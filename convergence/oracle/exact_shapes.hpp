@@ -8,10 +8,10 @@
 
 namespace slipstick::convergence {
 
-/// What the exact side knows of an indenter's shape.
+/// An indenter's shape in terms of the exact theories.
 struct ExactShape {
   std::string profile;                 ///< as analytic::press() takes it
-  std::vector<double> numbers;         ///< likewise, SI units
+  std::vector<double> numbers;         ///< of the profile, SI units
   std::optional<double> gap_exponent;  ///< n of a gap like r^n; none where contacts are not similar
 };
 

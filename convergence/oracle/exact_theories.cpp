@@ -74,7 +74,7 @@ class Indentation {
   }
 
   const Moduli& pair() const { return pair_; }
-  /// mu; theories that ask for it hold under Coulomb's law alone.
+  /// mu; its theories hold under Coulomb's law only.
   double friction() const { return friction_.coefficient; }
 
   /// The contact, without shear.

@@ -36,7 +36,7 @@ std::unique_ptr<ExactHistory> no_theory(const std::string& reason);
 
 // ---------------------------------------------------------------- friction (friction_bound.cpp)
 
-/// What friction carries over an axisymmetric contact: reference times profile.pressure(r/a).
+/// The friction bound of an axisymmetric contact: reference * profile.pressure(r/a).
 struct FrictionBound {
   std::shared_ptr<const analytic::Profile> profile;
   double reference;  ///< Pa
@@ -51,11 +51,10 @@ std::optional<FrictionBound> find_friction_bound(const solver::FrictionLaw& law,
 
 // ---------------------------------------------------------------- bodies with a coat (coated_contact.cpp)
 
-/// The material that is touched: that of the body's layer where it has one.
+/// The material at the surface: the layer's, where the body has one.
 solver::Material surface_material(const solver::Material& body);
 
-/// Why a coated scene has no exact contact, or one that torsion alone does not describe; empty if it may
-/// have.
+/// Why a coated scene has no exact contact, or one that needs more than torsion; empty if it may have one.
 std::string coated_obstacle(const solver::Scene& scene);
 
 /// The contact of a sphere or flat punch where a body is coated, under a load in N. Throws what

@@ -24,7 +24,7 @@ std::string obstacle(const std::vector<solver::Surface>& surfaces) {
                      surface.inner_radius > 0.0 ? " with an inner radius" : "");
 }
 
-/// Whether the pressure moves the two surfaces sideways by different amounts, and the scene wants to know.
+/// Whether the pressure moves the two surfaces sideways by different amounts, and the scene includes that.
 bool is_coupled(const solver::Scene& scene) {
   return scene.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
 }

@@ -15,19 +15,19 @@ namespace slipstick::convergence {
 /// The exact answer for an axisymmetric scene, in the scene's units (SI): the normal contact of its indenter
 /// (Hertz, Love, Boussinesq, Sneddon, Ciavarella), in torsion about its own axis (Lubkin 1951; Jaeger 1995)
 /// or under a tangential force (Cattaneo 1938, Mindlin 1949; exact where nu = 0), or pressed with friction
-/// against another material (Goodman 1962, Spence 1968: the stick ratio alone). For an ellipsoid the normal
-/// contact (Hertz 1882), its limit moment, and the loads and motions that the scene imposes. What it does not
-/// say is NaN.
+/// against another material (Goodman 1962, Spence 1968: only the stick ratio). For an ellipsoid the normal
+/// contact (Hertz 1882), its limit moment, and the loads and motions that the scene imposes. Unknown numbers
+/// are NaN.
 struct Oracle {
   std::shared_ptr<const analytic::Profile> profile;
-  /// What friction carries, over reference_bound; the pressure's own profile under Coulomb's law.
+  /// Profile of the friction bound, over reference_bound; under Coulomb's law the pressure's profile.
   std::shared_ptr<const analytic::Profile> bound;
   double reference_bound = 0.0;   ///< Pa: mu p0 under Coulomb's law
   double friction_force = 0.0;    ///< N, that slides the contact along a line: mu W under Coulomb's law
   std::array<double, 2> centre;   ///< m, of the axis
   double axis_ratio = 1.0;        ///< of an elliptic contact: its semi-axis at `angle` over the other
   double angle = 0.0;             ///< rad, from x1
-  double contact_radius;          ///< m; an ellipse's is that of the circle of equal area
+  double contact_radius;          ///< m; of an ellipse the radius of the circle of equal area
   double reference_pressure;      ///< Pa, the profile's p0
   double peak_pressure;           ///< Pa; infinite under a cone and a flat punch
   double approach;                ///< m
@@ -39,7 +39,7 @@ struct Oracle {
   double stick_radius;                   ///< m; the contact radius where everything sticks
   double dissipated;                     ///< J, in this step
   analytic::TorsionState state;
-  double relative_uncertainty;  ///< of these numbers: how far they may be from those that the theory gives
+  double relative_uncertainty;  ///< largest relative difference from the theory's numbers
 
   /// Shear traction in Pa at a distance from the axis in m: along `direction`, or around the axis where that
   /// is zero. Empty: not known.
@@ -49,11 +49,11 @@ struct Oracle {
   /// Why it says nothing of friction but the limit moment; empty where it says more.
   std::string only_normal;
 
-  /// Radius in m at a place, given in m from the axis: the distance, and under an ellipse that of the circle
-  /// of equal area to the similar ellipse through the place.
+  /// Radius in m of a place, given in m from the axis: its distance; for an ellipse the radius of the circle
+  /// with the area of the similar ellipse through the place.
   double radius(double y1, double y2) const;
 
-  /// Semi-axes of the contact, m; those of a circle are its radius.
+  /// Semi-axes of the contact, m; both are the radius of a circle.
   double longer_semi_axis() const;
   double shorter_semi_axis() const;
 

@@ -4,10 +4,10 @@
 #include "convergence/results/solve_record.hpp"
 #include "solver/scene/scene.hpp"
 
-/// The result of a scene that asks for the exact answer, solver.model = "exact".
+/// The result of a scene with solver.model = "exact".
 namespace slipstick::convergence {
 
-/// The scene's exact answer. Throws InputError, with the reason and what is allowed, where there is none.
+/// The scene's exact answer. Throws InputError, with the reason and the allowed values, where there is none.
 Oracle require_oracle(const solver::Scene& scene);
 
 /// Its record; a number that does not exist without a grid is missing. seconds: s, in which it was found.

@@ -136,8 +136,7 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
         "the loads are brought in too few parts, so the contact's motion is {}; set solver.substeps higher{}",
         uncertain, resolution.number == &solver::Quantities::twist ? ", or use --accuracy" : "");
   }
-  return fmt::format("little is left beside what the steps before have changed, so it is {}; take more cells",
-                     uncertain);
+  return fmt::format("cancellation between steps dominates, so it is {}; take more cells", uncertain);
 }
 
 ResolutionRecord resolution_of(const solver::Resolution& resolution) {
@@ -366,7 +365,7 @@ FrictionRecord make_friction(const solver::FrictionLaw& law, double force) {
                         .map = law.map.string(),
                         .force = number_or(force, kBrokeDown)};
   if (law.kind == tresca) {
-    record.coefficient = {.why_missing = "Tresca's law has a shear strength in place of a coefficient"};
+    record.coefficient = {.why_missing = "Tresca's law has a shear strength, no coefficient"};
   }
   return record;
 }

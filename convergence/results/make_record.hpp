@@ -11,7 +11,7 @@
 /// Records of solutions: SI units, radians, errors against the exact answer where there is one.
 namespace slipstick::convergence {
 
-/// steps: those of the scene's history, the last one included; empty without a history.
+/// steps: all steps of the scene's history with the last one; empty without a history.
 SolveRecord make_record(const solver::Scene& scene, const solver::Solution& solution,
                         const OracleAnswer& exact, std::vector<StepRecord> steps = {});
 
@@ -34,7 +34,7 @@ inline constexpr const char* kNoSlip = "nothing slips";
 FrictionRecord make_friction(const solver::FrictionLaw& law, double force);
 /// Without its energy.
 CertificateRecord make_certificate(const solver::Certificate& certificate, const std::string& reason);
-/// Those of a result without an exact answer.
+/// The errors of a result without an exact answer: only the reason.
 ErrorsRecord no_errors(const std::string& reason);
 FieldErrorRecord make_field_error(const FieldError& error, const std::string& reason);
 /// Without sharpened fields.

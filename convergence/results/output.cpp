@@ -15,7 +15,7 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Calls, and names the option in front of what is said of the path.
+/// Calls; an InputError about the path gets the name of the option in front.
 template <typename Call>
 void naming(const std::string& option, const std::string& path, const Call& call) {
   try {
@@ -42,7 +42,7 @@ std::string plain_text(std::string_view text) {
   const std::string printable = solver::printable(text);
   const std::string_view all = printable;
   std::string plain;
-  bool line_begins = true;  // a server may skip any blank, of which Unicode has many
+  bool line_begins = true;  // a server may skip any blank, and Unicode has many
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string_view rest = all.substr(i);
     const bool commands = (line_begins && rest.starts_with("::")) || rest.starts_with("##[") ||

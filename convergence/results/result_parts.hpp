@@ -8,7 +8,7 @@
 /// Numbers in JSON and in text for people.
 namespace slipstick::convergence {
 
-/// Sets a key to null, with the reason beside it.
+/// Sets a key to null, and the key with "_reason" to the reason.
 void set_missing(Json& object, const std::string& key, const std::string& reason);
 
 /// The same of a number with its own reason.

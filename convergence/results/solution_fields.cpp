@@ -83,9 +83,8 @@ std::vector<ProfilePoint> make_profile(const solver::Solution& solution, const O
 
 GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, const solver::Ranks& ranks) {
   if (!oracle.shear) {
-    throw solver::InputError(
-        scene.source.string(), "solver.model", "\"exact\"",
-        "auto, full where fields are asked for (the exact solution says the stick ratio alone)");
+    throw solver::InputError(scene.source.string(), "solver.model", "\"exact\"",
+                             "auto, full with --fields (the exact solution has the stick ratio only)");
   }
   solver::Scene sampled = scene;
   sampled.op =

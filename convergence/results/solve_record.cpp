@@ -131,7 +131,7 @@ class FieldReader {
     if constexpr (requires(FieldReader & fields) { list_fields(fields, value); }) {
       FieldReader fields(json);
       list_fields(fields, value);
-    } else if constexpr (std::floating_point<T>) {  // JSON has null for what is not finite
+    } else if constexpr (std::floating_point<T>) {  // JSON has null for NaN and infinity
       value = json.is_null() ? Number().value : json.get<T>();
     } else {
       value = json.get<T>();

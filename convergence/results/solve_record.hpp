@@ -77,7 +77,8 @@ struct FrictionRecord {
   Number force = {};     ///< N, that slides the contact along a line
 };
 
-/// The loads over those that the contact can carry, and how it would slide: about a centre or along a line.
+/// How far the loads could rise, and the motion in which the contact would slide: about a centre or along a
+/// line.
 struct LimitRecord {
   Number factor = {};
   std::optional<std::array<double, 2>> centre = {};     ///< m
@@ -116,7 +117,7 @@ struct CertificateRecord {
   std::optional<Number> energy = {};  ///< J; fields of other programs have none
 };
 
-/// What the length of the steps leaves open of each number.
+/// The uncertainty of each number by the length of the steps.
 struct PathsRecord {
   Number twist_angle = {};
   Number displacement = {};
@@ -174,8 +175,8 @@ struct ExactRecord {
   double relative_uncertainty = 0.0;
 };
 
-/// Errors against the exact answer: computed/exact - 1, see Errors. Without an exact answer, or as the exact
-/// answer itself, a result has the reason alone, at `twist`, `moment` and `stick_radius`.
+/// Errors against the exact answer: computed/exact - 1, see Errors. Without an exact answer, and for the
+/// exact answer itself, only the reason is known, in `twist`, `moment` and `stick_radius`.
 struct ErrorsRecord {
   Number twist = {};
   Number moment = {};
@@ -202,7 +203,7 @@ struct SecondsRecord {
 
 struct WorkRecord {
   int iterations = 0;
-  double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
+  double operator_applications = 0.0;  ///< tangential, of all grids, in applications on the finest one
   double pressure_applications = 0.0;  ///< of the normal operator, counted the same way
   std::optional<int> turns = {};       ///< of pressure and shear, under full coupling
   SecondsRecord seconds = {};
@@ -275,7 +276,7 @@ struct MethodRecord {
   SlipDirectionRecord slip_direction = {};
 };
 
-/// Of several processes that share a grid, each in the order of the ranks.
+/// Several processes that share a grid: numbers in the order of the ranks.
 struct RanksRecord {
   int number = 0;
   std::vector<double> peak_bytes = {};
@@ -301,7 +302,7 @@ struct Provenance {
   int threads = 1;  ///< of the operator
 };
 
-/// Numbers that another program states of its answer, as far as it does.
+/// Numbers that another program states of its answer.
 struct OwnNumbers {
   std::optional<double> twist_angle = {};  ///< rad
   std::optional<double> twist = {};        ///< the same, where it was written under this older name
@@ -330,8 +331,8 @@ struct ProfilePoint {
   double error = 0.0;
 };
 
-/// One solve: an answer on a grid, of a history that of its last step with all steps; an exact answer; the
-/// steps of a history that broke off; or why a run has no answer.
+/// One solve: an answer on a grid (at the end of the last step, with all steps of a history); an exact
+/// answer; the steps of a history that broke off; or the reason why a run has no answer.
 struct SolveRecord {
   RunStatus status = RunStatus::not_converged;
   std::string message = {};    ///< why it is not converged
@@ -351,7 +352,7 @@ struct SolveRecord {
   bool is_failed() const { return status == RunStatus::refused || status == RunStatus::failed; }
   bool is_converged() const { return status == RunStatus::converged; }
   bool is_exact() const { return problem.method == "exact"; }
-  /// s, of a history those of all its steps; NaN where there is no answer.
+  /// s, of all steps; NaN where there is no answer.
   double seconds() const;
 };
 

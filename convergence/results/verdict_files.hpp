@@ -30,7 +30,7 @@ std::string junit_text(const std::string& title, const std::vector<JunitCase>& c
 std::string markdown_with_table(std::string text, std::string_view header,
                                 const std::vector<std::string>& rows, std::string_view noun);
 
-/// "40 gates: 38 passed, 2 failed". counts: how many of each, those that are 0 are not shown.
+/// "40 gates: 38 passed, 2 failed". counts: the number of each; zeros are not shown.
 std::string counts_text(std::string_view noun, const std::vector<std::pair<std::string, long>>& counts);
 
 }  // namespace slipstick::convergence

@@ -43,7 +43,7 @@ class FailedRuns {
 /// The same of a result's key failed_runs.
 std::string failed_runs_text(const Json& result);
 
-// Of results as JSON, until their callers take records.
+// The same for results as JSON; to be removed once all callers take records.
 bool is_failed(const Json& result);
 bool is_converged(const Json& result);
 std::string why_missing(const Json& result, const std::string& path);

@@ -70,7 +70,7 @@ std::optional<SolveRecord> find(const ResultCache& cache, const PreparedRun& run
   }
 }
 
-/// The folder of finished results, and those that it joins.
+/// The folder of finished results, and the folders that it joins.
 class JoinedCaches {
  public:
   explicit JoinedCaches(const ProcessPoolOptions& options) : own_(options.folder, options.program) {
@@ -205,7 +205,7 @@ class TaskQueue {
   }
 
   void start_next() {
-    // The limit of all: the free memory now is smaller by what the running solves take.
+    // The limit of all runs, since the free memory now excludes the running solves.
     const auto limit = std::isfinite(memory_) ? std::optional(memory_) : std::nullopt;
     const Task* const task = &tasks_[next_++];
     auto pooled = std::ranges::find_if(workers_, [&](const PooledWorker& other) {

@@ -46,7 +46,7 @@ class ProcessPool {
   /// The same; a scene that cannot be read gives a record with the status refused.
   std::vector<SolveRecord> run_or_refuse(const std::vector<RunSpec>& specs) const;
 
-  /// The runs without a result in the folder and in those that it joins.
+  /// The runs without a result in the folder and in the joined ones.
   std::vector<PreparedRun> missing(const std::vector<PreparedRun>& runs) const;
 
   std::optional<double> memory_limit() const { return options_.memory_limit; }

@@ -6,14 +6,13 @@
 
 namespace slipstick::convergence {
 
-/// Says on standard error how far work is: one line on a terminal, rewritten; elsewhere a line now and then.
-/// Where nobody can read it, nothing.
+/// Progress on standard error: on a terminal one line, rewritten; elsewhere a line every ten seconds.
 class Progress {
  public:
-  /// weight: of all the work together, in the unit in which its parts are given.
+  /// weight: total work, in any unit.
   Progress(std::size_t parts, double weight) : total_(parts), left_(weight) {}
 
-  /// A part of so much weight is done.
+  /// A part is done; weight: its work, in the same unit.
   void finished(const std::string& label, double weight);
 
   /// "3 of 12".

@@ -33,7 +33,7 @@ std::optional<std::string> bytes_of(const fs::path& file) {
   }
 }
 
-/// What is kept of a result; `checksum` is that of all the rest.
+/// The JSON of a kept result; its `checksum` is over all other keys.
 Json entry(const std::string& program, const std::string& cache_key, const Json& result,
            const fs::path& beside) {
   Json kept{{"program", program}, {"cache_key", cache_key}, {"result", result}};

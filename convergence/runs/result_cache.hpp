@@ -12,21 +12,20 @@
 
 namespace slipstick::convergence {
 
-/// Finished results on disk, one file each, so that none is computed twice: a command that was interrupted
-/// goes on where it stopped. A result counts as finished if it was computed from the same cache key, which is
-/// everything that it depends on, by the same program, and if nothing in it has changed since. Several
-/// processes may share a folder: they keep equal results.
+/// Finished results on disk, one file each, so that an interrupted command computes none twice. A result
+/// counts as finished if the same program computed it from the same cache key, which holds everything that it
+/// depends on, and if its file is unchanged. Several processes may share a folder: they keep equal results.
 class ResultCache {
  public:
   /// program: the executable that computes, by its content: a copy on another machine is the same one. Throws
   /// InputError for a folder that cannot be made.
   explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = own_program());
 
-  /// That of the same program in another folder. Throws as above.
+  /// The cache of the same program in another folder. Throws as above.
   ResultCache in(std::filesystem::path folder) const;
 
-  /// The result of a name, which is its file's without ending, if it is on disk. beside: a file that belongs
-  /// to it, and that has to be the one that was there when it was kept; empty: none.
+  /// The result of a name (its file's name without ending), if it is on disk. beside: a file that belongs to
+  /// the result, and must be unchanged since; empty: none.
   std::optional<Json> find(const std::string& name, const std::string& cache_key,
                            const std::filesystem::path& beside = {}) const;
 
@@ -45,11 +44,11 @@ class ResultCache {
   std::string program_;  ///< identifies the executable
 };
 
-/// A non-cryptographic checksum: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: that of the bytes
-/// before these.
+/// A non-cryptographic checksum: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: the checksum of the
+/// preceding bytes.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before = 14695981039346656037ULL);
 
-/// The same, of eight bytes at once: another sum than that of the bytes.
+/// A checksum of eight bytes at once; it differs from checksum() of the bytes.
 std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before);
 
 /// A file by its content, the same for every copy of it.

@@ -14,7 +14,7 @@ namespace CLI {
 class App;
 }
 
-/// Options that commands share which solve, and the signals that end them.
+/// Options of the commands that solve, and the signals that end them.
 namespace slipstick::convergence {
 
 /// --set, whose words are "key=value".
@@ -40,19 +40,19 @@ struct RunOptions {
   void add_to(CLI::App& command);
   /// --program, --allow-programs.
   void add_programs_to(CLI::App& command);
-  /// --shard and --merge. Beside --shard the named options, which take what was judged, are refused.
+  /// --shard and --merge. of_judgement: options that need a judgement, which --shard does not make, so that
+  /// the two exclude each other.
   void add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement);
 
-  /// None where --shard was not given. Throws InputError for a word that is no shard.
+  /// None without --shard. Throws InputError for a word that is no shard.
   std::optional<Shard> wanted_shard() const;
-  /// What solves, with this program; an Interrupts that lives meanwhile stops it. Throws InputError where
-  /// --merge names what is no folder.
+  /// The pool of these options; a signal noted by Interrupts stops it. Throws InputError where --merge names
+  /// no folder.
   ProcessPool pool() const;
 };
 
-/// What asks a program to end, SIGINT, SIGTERM and SIGHUP, is noted for as long as this lives; what was
-/// ignored before, as under nohup, stays so. For the program's commands: a library leaves signals to its
-/// host.
+/// Notes SIGINT, SIGTERM and SIGHUP during its lifetime; signals that were ignored before, as under nohup,
+/// stay ignored. Only the program's commands use it: a library leaves signals to its host.
 class Interrupts {
  public:
   Interrupts();

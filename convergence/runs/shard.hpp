@@ -48,7 +48,7 @@ Json to_json(const ShardResult& result);
 std::string shard_text(const ShardResult& result);
 
 /// Throws InputError unless each run has a result in the pool's folder or in one that it joins. The message
-/// names the runs without a result, and how to go on.
+/// names the runs without a result, and the remedy.
 void require_finished(const std::vector<PreparedRun>& runs, const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

@@ -43,7 +43,7 @@ class Worker {
   Program program_;
 };
 
-/// Solves a run, on one thread unless its scene asks for more, and keeps its result. Throws InputError where
+/// Solves a run, on one thread unless its scene sets more, and keeps its result. Throws InputError where
 /// a file cannot be written, and as serve_runs().
 void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
                     const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache);

@@ -1,4 +1,4 @@
-"""audit_test.py PROGRAM: the audit's own integrals, what it sees of a wrong field, and what it says of a tenth of all cases."""
+"""audit_test.py PROGRAM: the audit's own integrals, its verdict on a wrong field, and its verdicts on a tenth of all cases."""
 
 import json
 import subprocess

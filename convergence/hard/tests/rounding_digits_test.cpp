@@ -67,8 +67,8 @@ TEST(RandomRounding, ChangesTheLastDigitsAlone) {
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
-// Next to the limit the twist answers to the moment that is missing to it, 1e-10 of the limit here, of which
-// rounding leaves six digits.
+// Near the limit the twist depends on the missing moment, here 1e-10 of the limit, and rounding leaves six
+// digits of that difference.
 TEST(RoundingDigits, AreLostNextToTheLimit) {
   const std::filesystem::path folder = testing::TempDir() + "slipstick-digits";
   const ProcessPool pool({.folder = folder, .program = SLIPSTICK_PROGRAM});

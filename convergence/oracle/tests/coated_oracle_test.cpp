@@ -41,7 +41,7 @@ TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
   }
 }
 
-/// The exact side's compliances under waves, against those of the solver, which are held to Navier's
+/// The exact side's compliances under waves, against the solver's, which are compared with Navier's
 /// equations and derived apart.
 TEST(CoatedOracle, MovesUnderWavesAsTheSolverHasIt) {
   using analytic::layered::Body;
@@ -71,7 +71,7 @@ TEST(CoatedOracle, CarriesItsLoads) {
   EXPECT_NEAR(carried.moment / (0.5 * oracle.moment_limit), 1.0, 1e-6);
 }
 
-/// The largest error of twists, over the largest twist, and of the limit moment in a history on so many
+/// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells`
 /// cells.
 double largest_error(solver::Scene scene, int cells) {
   scene.cells = {cells, cells};

@@ -29,7 +29,7 @@ Compared solve_scene(solver::Scene body, int cells) {
   return {solution, compare(solution, *find_oracle(body).oracle)};
 }
 
-// What the program promises at 128 cells with the pressure solved on the same grid.
+// The promised accuracy at 128 cells with the pressure solved on the same grid.
 constexpr double kTwistAt128 = 2e-4;
 constexpr double kTractionAt128 = 1e-2;
 
@@ -202,7 +202,7 @@ TEST(Comparison, EllipticPressureFallsWithTheMesh) {
   }
 }
 
-/// What is known of an ellipse is a number, the rest is null and says why.
+/// Known numbers of an ellipse are numbers, the others are null with a reason.
 TEST(Comparison, ResultOfAnEllipseSaysWhatIsExact) {
   const solver::Scene ellipse = example("ellipse", {"grid.cells=[32,16]"});
   const OracleAnswer exact = find_oracle(ellipse);

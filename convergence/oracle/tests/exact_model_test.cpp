@@ -74,7 +74,7 @@ TEST(ExactModel, DoesNotKnowTheUnits) {
     for (const auto& [metre, newton] : {std::pair(1e3, 1.0), std::pair(1e9, 1e9), std::pair(1e-3, 1e-6)}) {
       const Json other = answer(in_units(exact_scene(name), metre, newton));
       for (const char* key : {"stick_ratio", "moment_ratio", "twist"}) {
-        EXPECT_EQ(number(other, key), number(si, key)) << name;  // these the load alone decides
+        EXPECT_EQ(number(other, key), number(si, key)) << name;  // the load decides these
       }
       EXPECT_NEAR(number(other, "twist_angle") / number(si, "twist_angle"), 1.0, kTolerance) << name;
       EXPECT_NEAR(number(other, "contact_radius") / (metre * number(si, "contact_radius")), 1.0, kTolerance);

@@ -13,7 +13,7 @@ namespace {
 using namespace solver;
 using testing::HasSubstr;
 
-constexpr double kPeak = 2e9;  // Pa, about that of the paper's sphere
+constexpr double kPeak = 2e9;  // Pa, about as on the paper's sphere
 
 FrictionLaw law_of(FrictionKind kind, double exponent = 1.0) {
   FrictionLaw law = 0.1 * std::pow(kPeak, 1.0 - exponent);
@@ -57,7 +57,7 @@ TEST(FrictionLawOracle, TractionsCarryTheMomentWithinTheBound) {
   }
 }
 
-/// A constant strength asks for no pressure: every axisymmetric contact of one radius turns alike.
+/// A constant strength does not depend on the pressure: all axisymmetric contacts of one radius turn equally.
 TEST(FrictionLawOracle, TrescasTwistIsThatOfTheRadiusAlone) {
   const FrictionLaw law = law_of(FrictionKind::tresca);
   const auto scaled = [&](const char* body) {

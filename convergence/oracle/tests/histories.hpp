@@ -44,7 +44,7 @@ inline solver::Scene pushed(solver::Scene scene, const std::vector<Push>& pushes
   return scene;
 }
 
-/// What pressure and shear carry: the integrals of p, |q| r and |q| over the contact.
+/// The loads of pressure and shear: the integrals of p, |q| r and |q| over the contact.
 struct CarriedLoads {
   double load = 0.0;
   double moment = 0.0;

@@ -23,7 +23,7 @@ struct State {
   Errors errors;
 };
 
-/// Every step, beside its exact answer.
+/// Each step with its exact answer.
 std::vector<State> follow(const Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   std::vector<State> states;
@@ -53,7 +53,7 @@ double motion(const Oracle& oracle) {
                                                            : size(oracle.displacement);
 }
 
-// What the program promises of first loading at 128 cells, the pressure solved on the same grid.
+// The promised accuracy of first loading at 128 cells, with the pressure solved on the same grid.
 constexpr double kMotionAt128 = 2e-4;
 constexpr double kStepTractionAt128 = 1e-2;  // L1
 // Twist, displacement and energy are off by the gap of either answer, 1e-8 of its energy; tractions by its
@@ -79,7 +79,7 @@ Scene forced(const std::vector<double>& forces) {
 }
 
 /// Masing's rule holds on any mesh: after a reversal slip starts anew against twice the friction. So the
-/// errors at all reversals are those of first loading.
+/// the errors at all reversals equal the errors of first loading.
 void expect_every_reversal_as_good_as_the_first(const Scene& cycle) {
   const std::vector<State> coarse = follow(on_cells(cycle, 64));
   const std::vector<State> fine = follow(on_cells(cycle, 128));
@@ -109,7 +109,7 @@ TEST(HistoryComparison, AForceGoesBackAndForth) {
   expect_every_reversal_as_good_as_the_first(forced({80.0, -80.0, 80.0, -80.0}));
 }
 
-/// Errors stay those of first loading in size, though the answers become smaller: residual states, loops
+/// Absolute errors stay as in first loading, though the answers become smaller: residual states, loops
 /// within loops.
 void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radius) {
   const std::vector<State> states = follow(on_cells(scene, 128));
@@ -130,7 +130,7 @@ TEST(HistoryComparison, SmallCyclesInALargeOne) {
   expect_errors_of_first_loading(forced({80.0, -80.0, 30.0, -20.0, 25.0}), 62);
 }
 
-/// A loop that closes is forgotten: from 0.3 down to -0.2 and back, the state is the one before; then on to
+/// A closed loop leaves no trace: after 0.3, -0.2 and back, the state is the one before; then on to
 /// 0.8 as if there had been no loop.
 TEST(HistoryComparison, AClosedLoopIsForgotten) {
   for (const Scene& scene :
@@ -150,7 +150,7 @@ TEST(HistoryComparison, AClosedLoopIsForgotten) {
 
 // ------------------------------------------------------------------ normal loads that change
 
-/// From a push held after first loading to another, straight, in so many steps.
+/// Steps from one push held after first loading to another, along a straight line.
 Scene straight(const Push& from, const Push& to, int steps) {
   std::vector<Push> pushes{from};
   for (int i = 1; i <= steps; ++i) {
@@ -293,7 +293,7 @@ TEST(HistoryComparison, ASmallForceBesideTorsion) {
 }
 
 /// A pure moment turns a body about its own axis, wherever it stands: the mesh moved by whole cells, the
-/// errors about the axis are those of the centred body.
+/// errors about the axis equal the errors of the centred body.
 TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
   Scene centred = on_cells(twisted(steel(), {0.8, -0.3}), 80);
   centred.extent = {1.6e-3, 1.6e-3};  // 20 um a cell
@@ -349,7 +349,7 @@ TEST(HistoryComparison, SpherePressedOnAnotherMaterialInSteps) {
               0.15);
 }
 
-/// The radius of the contact is that of its area, whether or not its pressure is Hertz's.
+/// The radius of the contact follows from its area, with Hertz's pressure or another one.
 TEST(HistoryComparison, ContactRadiusIsThatOfTheArea) {
   for (const solver::Coupling coupling : {solver::Coupling::pressure, solver::Coupling::full}) {
     const Solution solution = solver::solve(on_cells(against_rigid(coupling), 64));

@@ -190,7 +190,7 @@ TEST(OracleHistory, AClosedCycleOfForceLosesItsLoop) {
   EXPECT_NEAR(exact[0].stick_radius / exact[0].contact_radius, std::cbrt(1.0 - x), kHistoryTolerance);
 }
 
-/// Against a rigid body G and E* are those of the other one alone.
+/// Against a rigid body only the other body enters G and E*.
 TEST(OracleHistory, OneBodyMayBeRigid) {
   Scene scene = without_contraction(example("paper"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};

@@ -73,7 +73,7 @@ TEST(Oracle, LastDigitsCostNoAnswer) {
   }
 }
 
-// Love's and Boussinesq's contacts, and what they carry in torsion, by their formulas.
+// Love's and Boussinesq's contacts and their limit moments, by formulas.
 TEST(Oracle, ConeAndFlatPunch) {
   const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
   const Oracle cone = *find_oracle(example("cone", {"load.moment_ratio=0.5"})).oracle;
@@ -177,7 +177,7 @@ TEST(Oracle, EllipseIsHertzs) {
   }
 }
 
-/// What the scene imposes is known.
+/// Imposed loads and motions are known.
 TEST(Oracle, EllipseKnowsItsLoads) {
   solver::Scene scene = example("ellipse");
   solver::Step& step = scene.steps.front();
@@ -224,7 +224,7 @@ TEST(Oracle, FindsThePeakOffTheAxis) {
   }
   EXPECT_LE(highest, rounded.peak_pressure);
   EXPECT_GE(highest,
-            rounded.peak_pressure * (1.0 - 1e-4));  // a thousandth of the radius beside a smooth peak
+            rounded.peak_pressure * (1.0 - 1e-4));  // a thousandth of the radius from a smooth peak
   EXPECT_GT(highest, 1.01 * rounded.pressure(0.0));
 }
 

@@ -15,7 +15,7 @@
 namespace slipstick::convergence {
 namespace {
 
-/// The JSON of a record is that of the record read back from it.
+/// A record read back from its JSON has the same JSON.
 void expect_round_trip(const SolveRecord& record) {
   const std::string text = json_text(to_json(record));
   EXPECT_EQ(json_text(to_json(from_json(Json::parse(text)))), text);

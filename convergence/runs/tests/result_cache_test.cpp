@@ -59,7 +59,7 @@ TEST_F(ResultCacheTest, ADamagedPointIsComputedAgain) {
   }
 }
 
-/// Nobody waits for a pipe, and the results of links are not written elsewhere.
+/// A pipe is not read, and no result is written through a link.
 TEST_F(ResultCacheTest, WhatIsNoFileIsReplaced) {
   const fs::path point = folder_ / "point.json";
   const std::vector<std::function<void()>> others{
@@ -102,7 +102,7 @@ TEST_F(ResultCacheTest, AnotherProgramComputesAgain) {
   EXPECT_FALSE(ResultCache(folder_, SLIPSTICK_PROGRAM).find("point", "a").has_value());
 }
 
-// What a result is kept under holds the scene's name and whole tables, which need not be UTF-8; JSON is.
+// A cache key holds the scene's name and whole tables, which need not be UTF-8; JSON must be.
 TEST_F(ResultCacheTest, ResultsOfScenesWithAnyNameAreFoundAgain) {
   const PreparedRun run = prepare_run({.scene = write("caf\xe9.toml", solver::kShortScene)});
   const ResultCache cache(folder_ / "runs");

@@ -23,8 +23,8 @@ TEST(Shard, IsCountedFromOne) {
   }
 }
 
-/// Graham (1969): dealt from the largest down, no part has more than 4/3 of what the best split leaves the
-/// fullest one, which is at least the mean and at least the largest.
+/// Graham (1969): dealt in descending order, no part exceeds 4/3 of the largest part of the best split, which
+/// is at least the mean and at least the largest cost.
 TEST(Shard, CostsAreDealtEvenly) {
   const std::vector<std::vector<double>> lists{
       {}, {1.0}, {1, 4, 16, 64, 256}, {5, 5, 4, 4, 3, 3, 3}, std::vector<double>(100, 2.0)};
@@ -51,7 +51,7 @@ TEST(Shard, FinerMeshesAndMoreStepsCostMore) {
   const double fine = cost("/paper.toml", {"grid.cells=[512,512]"});
   EXPECT_GT(fine, 2.0 * coarse);
   EXPECT_GT(cost("/torsion_loop.toml", {"grid.cells=[256,256]"}), 2.0 * coarse);
-  // What no machine holds has a cost too.
+  // A mesh too large for any machine has a cost too.
   EXPECT_GT(cost("/paper.toml", {"grid.cells=[60000,60000]"}), fine);
 }
 

@@ -1,5 +1,5 @@
-// Any text is refused as a scene or solved, here on few cells; what counts as solved has numbers. What stands
-// behind a zero byte is the file table.csv, which a scene may name as height map or pressure.
+// Any text is refused as a scene or solved, here on few cells; a converged solve has finite numbers. The text
+// after a zero byte is the file table.csv, which a scene may name as height map or pressure.
 
 #include <algorithm>
 #include <cmath>

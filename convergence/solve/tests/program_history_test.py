@@ -136,7 +136,7 @@ class History(ProgramTest):
             self.assertIsInstance(result["stick_ratio"], float)
             self.assertEqual(result["contact_radius"] is None, coupling == "full")
             self.solve(steps, "--model", "exact", "--fields", "f.csv", *options, code=2,  # there are no tractions to write
-                       says=["stick ratio      0.", 'solver.model = "exact"', "stick ratio alone"])
+                       says=["stick ratio      0.", 'solver.model = "exact"', "stick ratio only"])
             self.assertFalse(Path("f.csv").exists())
             self.solve(steps, "--fields", "f.csv", *options)
             self.assertNotIn("q1_exact", Path("f.csv").read_text().splitlines()[0])
