@@ -25,7 +25,7 @@ constexpr double kWidestAngle = 0.4;
 constexpr double kFarthest = 24.0;  // cells further from the front than this take part in no fit
 constexpr double kLargestShift = 2.0;
 constexpr int kPasses = 4;  // each measures distances from the last one's front
-constexpr double kBesideQuadrant =
+constexpr double kAroundQuadrant =
     kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
 
 /// The part of the slip ring next to the front that is fitted on a ray, and the degree in the distance.
@@ -343,7 +343,7 @@ class FrontFit {
       const bool stuck = cells.sticks(i, j);
       if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
       const double theta = rays_.angle_of(i, j);
-      if (rays_.mirrored() && theta > 0.25 * kTurn + kBesideQuadrant && theta < kTurn - kBesideQuadrant)
+      if (rays_.mirrored() && theta > 0.25 * kTurn + kAroundQuadrant && theta < kTurn - kAroundQuadrant)
         return;
       const Rays::Between rays = rays_.between(theta);
       const double beyond = r - rays.of(rays_.counted());

@@ -14,7 +14,7 @@
 /// and with them the bits.
 namespace slipstick::solver {
 
-/// As containers count.
+/// An index as a std::size_t.
 inline std::size_t count(Index n) { return static_cast<std::size_t>(n); }
 
 /// Complex lines of one plan. step: from one value of a line to the next; distance: from one line to the

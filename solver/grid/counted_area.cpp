@@ -11,8 +11,8 @@ namespace {
 constexpr double kUncertainOfSide = 0.044;
 /// Random part, by the place of the grid, in cells over sqrt(sides). A circle about a cell's centre, each of
 /// whose cells counts eight times, has the root mean square 0.563 (Cramer 1922: the count of points within
-/// radius R varies by (2.54 R)^(1/2), and the circle has 8 R sides). Among 1,100 contacts and stick areas 1 in
-/// 200 exceeds 2.44 times this together with kUncertainOfSide.
+/// radius R varies by (2.54 R)^(1/2), and the circle has 8 R sides). Among 1,100 contacts and stick areas 1
+/// in 200 exceeds 2.44 times this together with kUncertainOfSide.
 constexpr double kChance = 1.375;
 
 /// Sides of cells between inside and outside.

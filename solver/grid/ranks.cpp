@@ -37,7 +37,7 @@ class Planned final : public Communicator {
   int rank() const override { return 0; }
   Sent sent() const override { return {}; }
   void gather(void*, std::size_t, Index, Index) override { refuse(); }
-  void gather_beside(void*, std::size_t, Index, Index, Index) override { refuse(); }
+  void gather_adjacent(void*, std::size_t, Index, Index, Index) override { refuse(); }
   void transpose(void*, const SharedMatrix&, bool) override { refuse(); }
   bool have_all_ended() override { return true; }
   [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
@@ -63,10 +63,10 @@ void Ranks::gather(std::span<double> field, Index rows, Index rows_of_rank) cons
                         rows_of_rank);
 }
 
-void Ranks::gather_beside(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const {
+void Ranks::gather_adjacent(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const {
   if (!several() || rows == 0) return;
-  communicator_->gather_beside(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
-                               rows_of_rank, depth);
+  communicator_->gather_adjacent(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
+                                 rows_of_rank, depth);
 }
 
 void Ranks::gather_shares(void* things, std::size_t bytes, Index count) const {

@@ -52,7 +52,7 @@ class Ranks {
   /// Makes a field of `rows` rows whole on every rank. Each rank has rows_of_rank rows, the last ones fewer.
   void gather(std::span<double> field, Index rows, Index rows_of_rank) const;
   /// Brings `depth` rows on each side of this rank's rows from the ranks that have them.
-  void gather_beside(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const;
+  void gather_adjacent(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const;
   /// Makes an array whole on every rank. Each rank has its share().
   template <typename Thing>
   void gather_shares(std::span<Thing> things) const {

@@ -32,7 +32,7 @@ class Communicator {
   /// place, the last ranks fewer.
   virtual void gather(void* things, std::size_t bytes, Index count, Index of_rank) = 0;
   /// Brings only the `depth` things on each side of this rank's.
-  virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
+  virtual void gather_adjacent(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
 
   /// Transposes the matrix between ranks, in place: from this rank's rows, of all columns, to its columns, of
   /// all rows, or back. After to_columns, row i of rank r is in row i of the buffer, from column

@@ -78,7 +78,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   /// Where ranks have fewer things than `depth`, neighbours belong to several ranks.
-  void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) override {
+  void gather_adjacent(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) override {
     const Thing thing(bytes);
     const Part own = part_of(rank_, count, of_rank);
     std::vector<MPI_Request> requests;

@@ -175,7 +175,7 @@ void Extension::prepare_with(const FreePart& free_part, const Weights& weights) 
     in_own_rows(grid_, n, [&](Index first, Index count) {
       for (Index i = first; i < first + count; ++i) work_[i] = free_part(i)[entry];
     });
-    share_rows_beside(grid_, work_, kReach);
+    share_adjacent_rows(grid_, work_, kReach);
     spread<1>(work_, [&](Index first, Index count, const auto& sums) {
       weights_.segment(static_cast<Index>(entry) * n + first, count) =
           sums[0].head(count).unaryExpr(&to_tangent);
@@ -288,7 +288,7 @@ void Extension::collect_all(Field& y) {
       for (std::size_t c = 0; c < components; ++c) work_.segment(at(c), count) = values[c].head(count);
     }
   });
-  share_rows_beside(grid_, work_, kReach);
+  share_adjacent_rows(grid_, work_, kReach);
   spread<components>(work_, [&](Index first, Index count, const auto& sums) {
     for (std::size_t c = 0; c < components; ++c)
       y.segment(static_cast<Index>(c) * grid_.cells() + first, count) += sums[c].head(count);
@@ -296,7 +296,7 @@ void Extension::collect_all(Field& y) {
 }
 
 void Extension::extend(Field& y) {
-  share_rows_beside(grid_, y, kReach);
+  share_adjacent_rows(grid_, y, kReach);
   y.size() == grid_.cells() ? extend_all<1>(y) : extend_all<2>(y);
 }
 
