@@ -64,9 +64,8 @@ auto PaddedTransform::column(std::size_t field, Index column) -> Complex* {
   return as_complex(columns_) + static_cast<Index>(field * layout_.field) + column * axis1_.stride;
 }
 
-/// Inlined: the innermost loops of separate() and join() call it twice a column.
-inline auto PaddedTransform::rows_of(std::size_t field, Index column, Index group) -> Complex* {
-  return as_complex(columns_) + static_cast<Index>(field * layout_.field) + column * layout_.column +
+auto PaddedTransform::rows_of(std::size_t field, Index group) -> Complex* {
+  return as_complex(columns_) + static_cast<Index>(field * layout_.field) +
          (group - layout_.first_group) * layout_.group;
 }
 
@@ -147,13 +146,16 @@ void PaddedTransform::forward_group(int thread, std::size_t field, Index first_r
 /// conj Z(-k).
 void PaddedTransform::separate(std::size_t field, Index first_row, const Complex* spectra) {
   constexpr double half = 0.5;
-  const Index group = first_row / kRows;
-  const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
-    Complex* const out = rows_of(field, to, group);
-    __builtin_prefetch(rows_of(field, std::min(to + kAhead, columns() - 1), group), 1);
+  Complex* const start = rows_of(field, first_row / kRows);
+  const Index step = layout_.column;
+  const Index stride = axis2_.stride;
+  const Index last = columns() - 1;
+  const auto separate_column = [=](Index to, Index k, Index mirrored, const Complex* pairs) {
+    Complex* const out = start + to * step;
+    __builtin_prefetch(start + std::min(to + kAhead, last) * step, 1);
     for (Index r = 0; r < kRows; r += 2) {
-      const Complex z = pairs[r * axis2_.stride + k];
-      const Complex y = pairs[r * axis2_.stride + mirrored];
+      const Complex z = pairs[r * stride + k];
+      const Complex y = pairs[r * stride + mirrored];
       out[r] = {half * (z.real() + y.real()), half * (z.imag() - y.imag())};
       out[r + 1] = {half * (z.imag() + y.imag()), half * (y.real() - z.real())};
     }
@@ -168,15 +170,18 @@ void PaddedTransform::separate(std::size_t field, Index first_row, const Complex
 
 /// The inverse of separate().
 void PaddedTransform::join(std::size_t field, Index first_row, Complex* spectra) {
-  const Index group = first_row / kRows;
-  const auto join_column = [&](Index from, Index k, Index mirrored, Complex* pairs) {
-    const Complex* const in = rows_of(field, from, group);
-    __builtin_prefetch(rows_of(field, std::min(from + kAhead, columns() - 1), group));
+  const Complex* const start = rows_of(field, first_row / kRows);
+  const Index step = layout_.column;
+  const Index stride = axis2_.stride;
+  const Index last = columns() - 1;
+  const auto join_column = [=](Index from, Index k, Index mirrored, Complex* pairs) {
+    const Complex* const in = start + from * step;
+    __builtin_prefetch(start + std::min(from + kAhead, last) * step);
     for (Index r = 0; r < kRows; r += 2) {
       const Complex x = in[r];
       const Complex y = in[r + 1];
-      pairs[r * axis2_.stride + mirrored] = {x.real() + y.imag(), y.real() - x.imag()};
-      pairs[r * axis2_.stride + k] = {x.real() - y.imag(), y.real() + x.imag()};
+      pairs[r * stride + mirrored] = {x.real() + y.imag(), y.real() - x.imag()};
+      pairs[r * stride + k] = {x.real() - y.imag(), y.real() + x.imag()};
     }
   };
   const Index evens = axis2_.m / 2 + 1;

@@ -105,7 +105,8 @@ class PaddedTransform {
   Layout layout() const;
   Complex* column(std::size_t field, Index column);
   Complex* gathered(int thread, std::size_t field, Index column);
-  Complex* rows_of(std::size_t field, Index column, Index group);
+  /// A group of rows in the first column.
+  Complex* rows_of(std::size_t field, Index group);
   double* reals(std::size_t field) { return columns_.data() + 2 * field * layout_.field; }
   Complex* scratch(int thread) { return as_complex(scratch_[static_cast<std::size_t>(thread)]); }
   Complex* turned(int thread) { return scratch(thread) + 2 * static_cast<Index>(fields_) * axis1_.stride; }
