@@ -119,15 +119,17 @@ int time_scene(const BenchRequest& request, std::ostream& text, Json& result) {
     runs.overrides.push_back(beside.back().override);
   }
   const convergence::ProcessPool pool = runs.pool();
+  convergence::SceneCosts costs;
   {
     const convergence::Interrupts interrupts;
-    result = convergence::scene_costs(
+    costs = convergence::scene_costs(
         {.base = {.scene = request.scene, .overrides = request.overrides},
          .size = request.quick ? convergence::quick_page() : convergence::usual_page(),
          .beside = beside},
         folder / "data", pool);
   }
-  text << convergence::costs_text(result);
+  result = convergence::to_json(costs);
+  text << convergence::costs_text(costs);
   return 0;
 }
 

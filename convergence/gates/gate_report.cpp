@@ -217,12 +217,16 @@ std::string gates_markdown(const std::vector<Judgement>& judgements) {
                              "gates");
 }
 
-Json gates_json(const std::vector<Judgement>& judgements) {
+Json counts_json(const std::vector<Judgement>& judgements) {
   Json counts = Json::object();
   for (const Outcome outcome : kSeverity) counts.emplace(to_string(outcome), count(judgements, outcome));
+  return counts;
+}
+
+Json gates_json(const std::vector<Judgement>& judgements) {
   Json rows = Json::array();
   for (const Judgement& judgement : judgements) rows.push_back(judgement_json(judgement));
-  return {{"exit_code", exit_code(judgements)}, {"counts", counts}, {"gates", rows}};
+  return {{"exit_code", exit_code(judgements)}, {"counts", counts_json(judgements)}, {"gates", rows}};
 }
 
 }  // namespace slipstick::convergence

@@ -18,6 +18,9 @@ std::string gates_junit(const std::vector<Judgement>& judgements);
 /// A Markdown table, the worst gate first, shorter than kMaxMarkdown bytes: rows that do not fit are counted.
 std::string gates_markdown(const std::vector<Judgement>& judgements);
 
+/// {outcome: number}.
+Json counts_json(const std::vector<Judgement>& judgements);
+
 /// {exit_code, counts: {outcome: number}, gates: [a row for each judgement]}.
 Json gates_json(const std::vector<Judgement>& judgements);
 

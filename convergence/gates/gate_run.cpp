@@ -15,7 +15,7 @@
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/studies/budget.hpp"
-#include "convergence/studies/study.hpp"
+#include "convergence/studies/study_run.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -81,7 +81,7 @@ void solve_scenes(const std::vector<GateSource>& sources, const ProcessPool& poo
 Json study_result(const StudySource& source, const ProcessPool& pool) {
   const Study study = read_study(source.file, source.overrides);
   try {
-    return run_study(study, pool);
+    return to_json(run_study(study, pool));
   } catch (const InputError&) {
     throw;
   } catch (const std::invalid_argument& error) {

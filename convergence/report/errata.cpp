@@ -1,3 +1,5 @@
+#include "convergence/report/errata.hpp"
+
 #include <fmt/core.h>
 
 #include <cmath>
@@ -7,7 +9,7 @@
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/report/validation.hpp"
+#include "convergence/results/quantity.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -49,12 +51,11 @@ std::string equation_5_cancellation() {
   return text;
 }
 
-std::string frozen_directions(const Json& circle, const Json& ellipses) {
+std::string frozen_directions(const Json& circle, const std::vector<Json>& ellipses) {
   const auto evidence = [](const Json& result) {
     return fmt::format("{:.2g}° (gap/energy {:.1e}) at {} × {} cells",
-                       result["slip_direction"]["mean"].get<double>(),
-                       result["certificate"]["gap"].get<double>(), result["cells"][0].get<int>(),
-                       result["cells"][1].get<int>());
+                       number_at(result, "slip_direction.mean"), number_at(result, "certificate.gap"),
+                       number_at(result, "cells[0]"), number_at(result, "cells[1]"));
   };
   std::string text =
       "at 0.9 of the limit, traction is off the slip's direction, in the mean, on a circular contact by " +
@@ -70,7 +71,7 @@ Json erratum(const char* equation, const char* printed, const char* holds, const
 
 }  // namespace
 
-Json errata(const Json& circle, const Json& ellipses) {
+Json errata(const Json& circle, const std::vector<Json>& ellipses) {
   return {
       erratum("(1), first branch", "factor 3μW/(2πa²)", "that factor times 2/π", jump_at_stick_radius()),
       erratum("(5)", "a closed form", "right, but its terms cancel as aₛ/a approaches 1",

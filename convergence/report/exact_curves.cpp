@@ -1,3 +1,5 @@
+#include "convergence/report/exact_curves.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,7 +9,6 @@
 #include "analytic/cycle.hpp"
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/report/validation.hpp"
 
 namespace slipstick::convergence {
 namespace {

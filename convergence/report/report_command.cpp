@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <ostream>
 
@@ -106,46 +107,46 @@ PageRequest page_request(const ReportRequest& request) {
   return page;
 }
 
-std::string summary_row(const Json& page) {
+std::string summary_row(const Page& page) {
   std::string lines;
-  for (const Json& line : page["headline"]["lines"]) {
-    lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", line[0].get<std::string>(),
-                         line[1].get<std::string>());
-  }
-  return fmt::format("| {} | {} | {} |", markdown_text(page["scene"]["name"].get<std::string>()),
-                     page["headline"]["verdict"].get<std::string>(), markdown_text(lines));
+  for (const Finding& finding : page.headline.findings)
+    lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", finding.what, finding.line);
+  return fmt::format("| {} | {} | {} |", markdown_text(page.scene.name), page.headline.verdict(),
+                     markdown_text(lines));
 }
 
-/// A page for each scene. Exit code 1 where a page says bad.
-int make_pages(PageRequest asked, const ReportRequest& request, std::ostream& text, Json& result) {
-  const std::vector<fs::path> folders = page_folders(request);
-  for (const std::string& scene : request.scenes) solver::read_scene(scene, request.runs.overrides);
-  std::vector<JunitCase> cases;
-  std::vector<std::string> rows;
-  bool good = true;
+/// A page for each scene. Exit code 1 where a verdict is bad.
+int make_pages(PageRequest request, const ReportRequest& words, std::ostream& text, Json& result) {
+  const std::vector<fs::path> folders = page_folders(words);
+  for (const std::string& scene : words.scenes) solver::read_scene(scene, words.runs.overrides);
+  std::vector<Page> pages;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const fs::path data = folders[i] / "data";
-    const ProcessPool pool = pool_in(data, request);
-    asked.base.scene = request.scenes[i];
-    Json page;
+    const ProcessPool pool = pool_in(data, words);
+    request.base.scene = words.scenes[i];
     {
       const Interrupts interrupts;
-      page = scene_page(asked, data, pool);
+      pages.push_back(scene_page(request, data, pool));
     }
-    const Json& headline = page["headline"];
-    text << page["scene"]["name"].get<std::string>() << ": " << headline_text(headline)
+    text << pages.back().scene.name << ": " << headline_text(pages.back().headline)
          << "page: " << (folders[i] / "index.html").string() << '\n';
-    good = good && headline["verdict"] != "bad";
-    for (JunitCase& each : page_cases(page)) cases.push_back(std::move(each));
-    rows.push_back(summary_row(page));
-    result["pages"].push_back(std::move(page));
   }
-  draw(folders, request);
-  write_option_file("--junit", request.junit, junit_text("slipstick report", cases));
+  std::vector<JunitCase> cases;
+  std::vector<std::string> rows;
+  Json list = Json::array();
+  for (const Page& page : pages) {
+    std::ranges::move(page_cases(page), std::back_inserter(cases));
+    rows.push_back(summary_row(page));
+    list.push_back(to_json(page));
+  }
+  result = Json{{"pages", std::move(list)}};
+  draw(folders, words);
+  write_option_file("--junit", words.junit, junit_text("slipstick report", cases));
   write_option_file(
-      "--summary", request.summary,
+      "--summary", words.summary,
       markdown_with_table("### slipstick report\n\n", "| scene | verdict | why |", rows, "scenes"));
-  return good ? 0 : 1;
+  return std::ranges::any_of(pages, [](const Page& page) { return page.headline.verdict() == "bad"; }) ? 1
+                                                                                                       : 0;
 }
 
 int run_report(ReportRequest request, std::ostream& text, Json& result) {

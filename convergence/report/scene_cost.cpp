@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/growth.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/run_batch.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
@@ -22,12 +24,12 @@ namespace {
 using solver::Index;
 
 const double kCostTolerances[] = {1e-3, 1e-6, 1e-9};
-const double kAsked[] = {1e-2, 1e-3, 1e-4};
+const double kWanted[] = {1e-2, 1e-3, 1e-4};
 
-/// What `--accuracy` would take, a row for each error asked for.
+/// The choices of `solve --accuracy`, a row for each wanted error.
 Json choices(const solver::Scene& scene) {
   Json rows = Json::array();
-  for (const double wanted : kAsked) {
+  for (const double wanted : kWanted) {
     Json& row = rows.emplace_back(Json{{"wanted", wanted}});
     try {
       const AccuracyTarget target{wanted, AccuracyOf::twist};
@@ -36,7 +38,7 @@ Json choices(const solver::Scene& scene) {
       for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
         if (plan.contains(key)) row[key] = plan[key];
       }
-      if (const std::string note = note_on(scene); !note.empty()) row["remark"] = note;
+      if (std::string note = note_on(scene); !note.empty()) row.emplace("remark", std::move(note));
     } catch (const solver::InputError& error) {
       set_missing(row, "cells", error.what());
     }
@@ -44,15 +46,7 @@ Json choices(const solver::Scene& scene) {
   return rows;
 }
 
-/// A page's row for a number; null: it has none.
-const Json* find_row(const Json& numbers, const std::string& key) {
-  for (const Json& row : numbers) {
-    if (row["key"] == key) return &row;
-  }
-  return nullptr;
-}
-
-/// What solves the scene: its name, the overrides that ask for it, and its finest mesh.
+/// A method or a program, the overrides that select it, and its finest mesh.
 struct Contender {
   std::string name;
   std::vector<std::string> overrides;
@@ -70,114 +64,161 @@ std::vector<Contender> contenders(const solver::Scene& scene, Index finest, cons
   return all;
 }
 
+/// The results in the order of the runs. A scene that cannot be read gives a refused result.
+std::vector<Json> run_or_refuse(const std::vector<RunSpec>& runs, const ProcessPool& pool) {
+  std::vector<Json> results(runs.size());
+  std::vector<PreparedRun> prepared;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    try {
+      prepared.push_back(prepare_run(runs[i]));
+      places.push_back(i);
+    } catch (const solver::InputError& error) {
+      results[i] = to_json(not_computed(RunStatus::refused, error.what(), runs[i]));
+    }
+  }
+  std::vector<Json> solved = to_json(pool.run_prepared(prepared));
+  for (std::size_t k = 0; k < solved.size(); ++k) results[places[k]] = std::move(solved[k]);
+  return results;
+}
+
+std::string word(const Json& result, const char* key) { return result.value(key, ""); }
+
+/// The error of an answer of another program, by the first number that it has.
+void compare(ProgramAnswer& row, const Json& result, const std::vector<std::string>& numbers,
+             const std::vector<PageNumber>& known) {
+  for (const std::string& number : numbers) {
+    const PageNumber* const reference = find_row(known, number);
+    const double error =
+        reference == nullptr
+            ? kNaN
+            : std::abs(size_at(result, number) / reference->reference - 1.0) + reference->uncertainty;
+    row.number = number;
+    row.error = number_or(error, is_failed(result) ? "there is no answer" : "no reference is known");
+    if (std::isfinite(error)) return;
+  }
+}
+
+/// seconds: of each repetition.
+OperatorTime operator_time(const std::string& kind, double cells, const std::vector<double>& seconds) {
+  const TypicalSeconds time = typical(seconds);
+  return {.kind = kind,
+          .cells = cells,
+          .seconds = number_or(time.seconds, "it did not solve"),
+          .low = number_or(time.low, "one repetition"),
+          .high = number_or(time.high, "one repetition")};
+}
+
+std::string shown_number(double value, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:.2e}{}", value, unit) : std::string("-");
+}
+
+/// The status of a run that did not converge.
+std::string status_unless_converged(const std::string& status) { return status == "converged" ? "" : status; }
+
 }  // namespace
 
-Json error_against_time(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
+Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
                         const Reference& reference, const PageSize& size, const ProcessPool& pool) {
-  Json json{{"number", reference.number}, {"points", Json::array()}};
-  set_number(json, "reference_uncertainty", reference.uncertainty, "no reference is known");
-  RunBatch batch;
+  Cost cost{.number = reference.number,
+            .reference_uncertainty = number_or(reference.uncertainty, "no reference is known"),
+            .choices = choices(scene)};
+  std::vector<RunSpec> runs;
   for (const Contender& each : contenders(scene, meshes.back(), size)) {
     for (const Index cells : meshes) {
       if (cells > each.most_cells) continue;
       for (const double tolerance : kCostTolerances) {
-        RunSpec run = changed(base, each.overrides);
+        RunSpec& run = runs.emplace_back(changed(base, each.overrides));
         run.overrides.push_back(cells_override(scene, cells));
         run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-        batch.add_or_refuse(run, [&json, &reference, method = each.name, cells,
-                                  tolerance](const Json& result) {
-          Json& point = json["points"].emplace_back(Json{
-              {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
-          const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";
-          set_number(point, "seconds", seconds_of(result), why);
-          const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
-          set_number(point, "error", std::abs(found / reference.value - 1.0) + reference.uncertainty,
-                     is_converged(result) ? "no reference is known" : why);
-        });
+        cost.points.push_back({.method = each.name, .cells = cells, .tolerance = tolerance});
       }
     }
   }
-  batch.run(pool);
-  json["choices"] = choices(scene);
-  return json;
+  const std::vector<Json> results = run_or_refuse(runs, pool);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& result = results[i];
+    const std::string why = is_failed(result) ? word(result, "message") : "not a number";
+    const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
+    cost.points[i].status = word(result, "status");
+    cost.points[i].seconds = number_or(seconds_of(result), why);
+    cost.points[i].error = number_or(std::abs(found / reference.value - 1.0) + reference.uncertainty,
+                                     is_converged(result) ? "no reference is known" : why);
+  }
+  return cost;
 }
 
-Json answers_beside(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
-                    const Beside& beside, const ProcessPool& pool) {
-  Json rows = Json::array();
+std::vector<ProgramAnswer> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
+                                               const std::vector<Index>& meshes, const Contest& contest,
+                                               const ProcessPool& pool) {
   std::vector<BesideMethod> all{{"slipstick", kNoProgram}};
-  all.insert(all.end(), beside.programs.begin(), beside.programs.end());
-  RunBatch batch;
-  for (const auto& each : all) {
+  all.insert(all.end(), contest.programs.begin(), contest.programs.end());
+  std::vector<RunSpec> runs;
+  std::vector<ProgramAnswer> rows;
+  for (const BesideMethod& each : all) {
     for (const Index cells : meshes) {
-      const RunSpec run = changed(base, {each.override, cells_override(scene, cells)});
-      batch.add_or_refuse(run, [&rows, &beside, name = each.name, cells](const Json& result) {
-        Json& row = rows.emplace_back(Json{{"name", name}, {"cells", cells}, {"status", result["status"]}});
-        row["version"] = "";
-        row["message"] = result.value("message", "");
-        const bool foreign = result.contains("program");
-        if (foreign) row["version"] = result["program"]["version"];
-        set_number(row, "seconds", seconds_of(result), "there is no answer");
-        set_number(row, "cpu_seconds", foreign ? number_at(result, "program.cpu_seconds") : kNaN,
-                   "it was not counted");
-        const bool pressure = foreign && result["program"]["fields"] == "pressure";
-        for (const std::string& number :
-             pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{beside.number}) {
-          const Json* const known = find_row(beside.numbers, number);
-          row["number"] = number;
-          set_number(row, "error",
-                     known == nullptr
-                         ? kNaN
-                         : std::abs(size_at(result, number) / number_at(*known, "reference") - 1.0) +
-                               number_at(*known, "uncertainty"),
-                     is_failed(result) ? "there is no answer" : "no reference is known");
-          if (row["error"].is_number()) break;
-        }
-      });
+      runs.push_back(changed(base, {each.override, cells_override(scene, cells)}));
+      rows.push_back({.name = each.name, .cells = cells});
     }
   }
-  batch.run(pool);
+  const std::vector<Json> results = run_or_refuse(runs, pool);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& result = results[i];
+    ProgramAnswer& row = rows[i];
+    const auto program = result.find("program");
+    const bool foreign = program != result.end();
+    row.status = word(result, "status");
+    row.message = word(result, "message");
+    row.version = foreign ? word(*program, "version") : "";
+    row.seconds = number_or(seconds_of(result), "there is no answer");
+    row.cpu_seconds =
+        number_or(foreign ? number_at(result, "program.cpu_seconds") : kNaN, "it was not counted");
+    const bool only_pressure = foreign && word(*program, "fields") == "pressure";
+    compare(
+        row, result,
+        only_pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{contest.number},
+        contest.numbers);
+  }
   return rows;
 }
 
-Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
-                          const ProcessPool& pool) {
-  std::map<std::string, std::map<double, std::vector<double>>> seconds;
-  RunBatch batch;
-  for (const char* kind : {"direct", "dcfft"}) {
+OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
+                                   const ProcessPool& pool) {
+  constexpr const char* kKinds[] = {"dcfft", "direct"};
+  std::vector<RunSpec> runs;
+  for (const char* kind : kKinds) {
     for (const double cells : size.operator_cells) {
       for (int repetition = 1; repetition <= size.repetitions; ++repetition) {
-        RunSpec run = changed(base, {cells_override(scene, static_cast<Index>(cells))});
+        RunSpec& run = runs.emplace_back(changed(base, {cells_override(scene, static_cast<Index>(cells))}));
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
-        run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // it is solved again
-        batch.add_or_refuse(
-            run, [&into = seconds[kind][cells]](const Json& result) { into.push_back(seconds_of(result)); });
+        run.overrides.push_back(
+            fmt::format("name=\"repetition {}\"", repetition));  // else it is the same run
       }
     }
   }
-  batch.run(pool);
+  const std::vector<Json> results = run_or_refuse(runs, pool);
+  OperatorTimes times;
   std::map<std::string, Family> families;
-  Json json{{"rows", Json::array()}};
-  for (const auto& [kind, by_cells] : seconds) {
-    for (const auto& [cells, times] : by_cells) {
-      families[kind].push_back({cells, times});
-      const TypicalSeconds time = typical(times);
-      Json& row = json["rows"].emplace_back(Json{{"operator", kind}, {"cells", cells}});
-      set_number(row, "seconds", time.seconds, "it did not solve");
-      set_number(row, "low", time.low, "one repetition");
-      set_number(row, "high", time.high, "one repetition");
+  auto result = results.begin();
+  for (const char* kind : kKinds) {
+    for (const double cells : size.operator_cells) {
+      std::vector<double> seconds;
+      for (int k = 0; k < size.repetitions; ++k) seconds.push_back(seconds_of(*result++));
+      families[kind].push_back({cells, seconds});
+      times.rows.push_back(operator_time(kind, cells, seconds));
     }
   }
   const Crossover crossover = find_crossover(families["direct"], families["dcfft"]);
   const std::string outside = crossover.remark.empty() ? "outside the measured sizes" : crossover.remark;
-  set_number(json, "cells", crossover.cells, outside);
-  set_number(json, "low", crossover.low, outside);
-  set_number(json, "high", crossover.high, outside);
-  json["remark"] = crossover.remark;
-  return json;
+  times.cells = number_or(crossover.cells, outside);
+  times.low = number_or(crossover.low, outside);
+  times.high = number_or(crossover.high, outside);
+  times.remark = crossover.remark;
+  return times;
 }
 
-Json scene_costs(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool) {
+SceneCosts scene_costs(const PageRequest& request, const std::filesystem::path& folder,
+                       const ProcessPool& pool) {
   const RunSpec& base = request.base;
   const solver::Scene scene = solver::read_scene(base.scene, base.overrides);
   const Meshes meshes = meshes_of(scene, request.size);
@@ -187,46 +228,40 @@ Json scene_costs(const PageRequest& request, const std::filesystem::path& folder
   }
   solver::make_folder(folder);
   const std::vector<Json> results = solve_answer(base, scene, meshes, folder / "answer.h5", pool);
-  Json costs{{"provenance", provenance(std::max(1, scene.threads))}, {"scene", scene.name}};
-  costs["numbers"] =
-      number_rows(scene, results, scene_studies(base, scene, meshes, request.size, pool).front());
-  const Reference reference = reference_of(results.back(), costs["numbers"]);
-  costs["cost"] = error_against_time(base, scene, meshes.answer, reference, request.size, pool);
+  SceneCosts costs{.provenance = provenance(std::max(1, scene.threads)), .scene = scene.name};
+  costs.numbers = number_rows(scene, results, scene_studies(base, scene, meshes, request.size, pool).front());
+  const Reference reference = reference_of(results.back(), costs.numbers);
+  costs.cost = error_against_time(base, scene, meshes.answer, reference, request.size, pool);
   if (!request.beside.empty()) {
     const Meshes coarse = meshes_of(scene, for_program(request.size));
-    costs["programs"] = answers_beside(base, scene, coarse.answer,
-                                       {request.beside, costs["numbers"], reference.number}, pool);
+    costs.programs = answers_of_programs(base, scene, coarse.answer,
+                                         {request.beside, costs.numbers, reference.number}, pool);
   }
-  costs["operators"] = direct_against_dcfft(base, scene, request.size, pool);
+  costs.operators = direct_against_dcfft(base, scene, request.size, pool);
   return costs;
 }
 
-std::string costs_text(const Json& costs) {
-  const auto shown = [](const Json& value, const char* unit) {
-    return value.is_number() ? fmt::format("{:.2e}{}", value.get<double>(), unit) : std::string("-");
-  };
-  std::string text = fmt::format(
-      "{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n",
-      costs["scene"].get<std::string>(), costs["cost"]["number"].get<std::string>(),
-      shown(costs["cost"]["reference_uncertainty"], ""), "method", "cells", "tolerance", "error", "time");
-  for (const Json& point : costs["cost"]["points"]) {
-    text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point["method"].get<std::string>(),
-                        point["cells"].get<Index>(), point["tolerance"].get<double>(),
-                        shown(point["error"], ""), shown(point["seconds"], " s"),
-                        point["status"] == "converged" ? "" : "  " + point["status"].get<std::string>());
+std::string costs_text(const SceneCosts& costs) {
+  std::string text =
+      fmt::format("{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n",
+                  costs.scene, costs.cost.number, shown_number(costs.cost.reference_uncertainty, ""),
+                  "method", "cells", "tolerance", "error", "time");
+  for (const CostPoint& point : costs.cost.points) {
+    const std::string status = status_unless_converged(point.status);
+    text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point.method, point.cells,
+                        point.tolerance, shown_number(point.error, ""), shown_number(point.seconds, " s"),
+                        status.empty() ? "" : "  " + status);
   }
-  for (const Json& row : costs.value("programs", Json::array())) {
-    text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row["name"].get<std::string>(),
-                        row["cells"].get<Index>(), "", shown(row["error"], ""), shown(row["seconds"], " s"),
-                        row["number"].get<std::string>(),
-                        row["status"] == "converged" ? "" : row["status"].get<std::string>());
+  for (const ProgramAnswer& row : costs.programs.value_or(std::vector<ProgramAnswer>{})) {
+    text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "",
+                        shown_number(row.error, ""), shown_number(row.seconds, " s"), row.number,
+                        status_unless_converged(row.status));
   }
-  const Json& crossing = costs["operators"];
-  text += crossing["cells"].is_number()
-              ? fmt::format("  convolution overtakes direct summation from {:.3g} cells a side on\n",
-                            crossing["cells"].get<double>())
-              : fmt::format("  convolution against direct summation: {}\n",
-                            crossing["remark"].get<std::string>());
+  const OperatorTimes& crossing = costs.operators;
+  text += std::isfinite(crossing.cells)
+              ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n",
+                            crossing.cells.value)
+              : fmt::format("  convolution against direct summation: {}\n", crossing.remark);
   return text;
 }
 

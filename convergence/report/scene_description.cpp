@@ -1,9 +1,8 @@
-#include "convergence/report/scene_numbers.hpp"
+#include "convergence/report/scene_description.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
@@ -14,6 +13,7 @@ namespace slipstick::convergence {
 namespace {
 
 using solver::Scene;
+using Summary = decltype(SceneDescription::summary);
 
 std::string shape_text(const solver::Surface& surface) {
   std::string text = solver::to_string(surface.shape);
@@ -71,10 +71,10 @@ void add_friction_rows(const solver::FrictionLaw& law, const auto& add) {
   if (!law.map.empty()) add("Factors of the friction", law.map.filename().string());
 }
 
-Json summary(const Scene& scene, const Scene& on_page, const solver::Grid& grid) {
-  Json rows = Json::array();
+Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& grid) {
+  Summary rows;
   const auto add = [&](const std::string& words, const std::string& value) {
-    rows.push_back({words, value});
+    rows.emplace_back(words, value);
   };
   for (const solver::Surface& surface : scene.surfaces) add("Indenter", shape_text(surface));
   add("Upper body", material_text(scene.upper));
@@ -106,41 +106,41 @@ Json summary(const Scene& scene, const Scene& on_page, const solver::Grid& grid)
 constexpr solver::Index kShown = 400;
 constexpr solver::Index kShownOnMap = 96;
 
-/// To as many digits as a colour shows.
+/// Four digits, enough for a colour.
 double coarse(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.4g}", value)) : value; }
 
-Json gap_of_bodies(const solver::Model& model, const solver::Grid& grid) {
-  Json json;
-  const auto add = [](Json& list, double value) {
-    list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
-  };
+SceneDescription::Gap gap_of_bodies(const solver::Model& model, const solver::Grid& grid) {
+  SceneDescription::Gap gap;
   const double unit = model.length_unit;
+  const auto gap_at = [&](solver::Index i, solver::Index j) {
+    const double value = unit * model.gap[i * grid.n2 + j];
+    return std::isfinite(value) ? value : std::nan("");
+  };
   for (solver::Index i = 0; i < grid.n1; i += 1 + grid.n1 / kShown) {
-    add(json["x1"], grid.x1(i));
-    add(json["along_1"], unit * model.gap[i * grid.n2 + grid.n2 / 2]);
+    gap.x1.push_back(grid.x1(i));
+    gap.along_1.push_back(gap_at(i, grid.n2 / 2));
   }
   for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShown) {
-    add(json["x2"], grid.x2(j));
-    add(json["along_2"], unit * model.gap[grid.n1 / 2 * grid.n2 + j]);
+    gap.x2.push_back(grid.x2(j));
+    gap.along_2.push_back(gap_at(grid.n1 / 2, j));
   }
   for (solver::Index i = 0; i < grid.n1; i += 1 + grid.n1 / kShownOnMap) {
-    Json& row = json["map"].emplace_back(Json::array());
-    for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShownOnMap) {
-      add(row, coarse(unit * model.gap[i * grid.n2 + j]));
-    }
+    std::vector<double>& row = gap.map.emplace_back();
+    for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShownOnMap)
+      row.push_back(coarse(gap_at(i, j)));
   }
-  return json;
+  return gap;
 }
 
 }  // namespace
 
-Json describe(const Scene& scene, const Scene& on_page, const std::filesystem::path& file) {
+SceneDescription describe(const Scene& scene, const Scene& on_page, const std::filesystem::path& file) {
   const solver::Model model = solver::make_model(on_page);
   const solver::Grid grid = model.grid_in_m();
-  return {{"name", scene.name},
-          {"text", read_text(file)},
-          {"summary", summary(scene, on_page, grid)},
-          {"gap", gap_of_bodies(model, grid)}};
+  return {.name = scene.name,
+          .text = read_text(file),
+          .summary = summary(scene, on_page, grid),
+          .gap = gap_of_bodies(model, grid)};
 }
 
 }  // namespace slipstick::convergence

@@ -11,7 +11,7 @@
 #include "convergence/orders/limit.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/studies/study.hpp"
+#include "convergence/studies/study_run.hpp"
 #include "solver/load_path.hpp"
 #include "solver/model/make_model.hpp"
 
@@ -32,13 +32,13 @@ constexpr double kRounded = 1e-9;
 /// The basis of an error against an exact answer.
 constexpr const char* kExact = "exact";
 
-/// A number that the page shows, where a result has it.
-struct PageNumber {
+/// Names of the numbers of a page.
+struct NumberName {
   const char* key;
   const char* words;
   const char* unit;
 };
-constexpr PageNumber kNumbers[] = {{"twist_angle", "twist", "rad"},
+constexpr NumberName kNumbers[] = {{"twist_angle", "twist", "rad"},
                                    {"moment", "moment", "N m"},
                                    {"displacement", "displacement", "m"},
                                    {"force", "tangential force", "N"},
@@ -77,29 +77,30 @@ struct MeshError {
   std::string basis;          ///< "exact" and others, or why nothing is known
 };
 
-/// From where the values of a study of meshes tend to, if it has that.
-MeshError error_by_study(const Json& study, const std::string& key, double value) {
-  for (const Json& series : study["series"]) {
-    if (!series["extrapolated"].contains(key)) continue;
-    const Json& limit = series["extrapolated"][key];
-    const double reference = number_at(limit, "value");
-    const double uncertainty = number_at(limit, "uncertainty") / std::abs(reference);
+/// From the value to which a study of meshes tends, if it has one.
+MeshError error_by_study(const StudyResult& study, const std::string& key, double value) {
+  for (const SeriesResult& series : study.series) {
+    const auto found = std::ranges::find(series.quantities, key, &QuantityResult::path);
+    if (found == series.quantities.end() || !found->extrapolated) continue;
+    const double reference = found->extrapolated->value;
+    const double uncertainty = found->extrapolated->uncertainty / std::abs(reference);
     return {reference, std::abs(value / reference - 1.0) + uncertainty, uncertainty,
-            fmt::format("study of meshes: {}", limit["method"].get<std::string>())};
+            fmt::format("study of meshes: {}", found->extrapolated->method)};
   }
   return {};
 }
 
-/// The mesh's error as the result states it, relative; NaN where the result's uncertainty is of another
+/// The key of the number to which the uncertainty of a result refers.
+std::string resolved_number(const Json& result) { return result.at("resolved").value("number", ""); }
+
+/// The mesh's error as the result states it, relative; NaN where the result's uncertainty refers to another
 /// number.
 double stated_mesh_error(const Json& result, const std::string& key) {
-  return result["resolved"].value("number", "") == key
-             ? number_at(result, "resolved.mesh") / size_at(result, key)
-             : kNaN;
+  return resolved_number(result) == key ? number_at(result, "resolved.mesh") / size_at(result, key) : kNaN;
 }
 
 /// study: of meshes.
-MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const Json& study,
+MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const StudyResult& study,
                      const std::string& key) {
   const Json& finest = results.back();
   const double value = size_at(finest, key);
@@ -108,15 +109,14 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
   }
   if (!(value > 0.0)) return {.basis = "the value is zero, or there is none"};
   if (results.size() < 2) {
-    if (finest["resolved"].value("number", "") != key)
-      return {.basis = "its files have its grid: there is no other mesh"};
+    if (resolved_number(finest) != key) return {.basis = "its files have its grid: there is no other mesh"};
     const double stated = stated_mesh_error(finest, key);
     return {value, stated, stated, "as the result states"};
   }
   std::vector<MeshSample> samples;
   samples.reserve(results.size());
   for (const Json& result : results)
-    samples.push_back({result["cell_size"][0].get<double>(), size_at(result, key)});
+    samples.push_back({number_at(result, "cell_size[0]"), size_at(result, key)});
   if (is_rough(scene)) {
     const double change = std::abs(value / samples[samples.size() - 2].value - 1.0);
     const double error = std::fmax(change, stated_mesh_error(finest, key));
@@ -158,25 +158,25 @@ double path_error(const Json& result, const std::string& key, bool on_path) {
   return number_at(result, "resolved.paths." + key) / size_at(result, key);
 }
 
-/// The parts of an error and their sum; of an exact answer's the sum is all that is known.
-void add_error(Json& row, const MeshError& mesh, double path) {
+/// The parts of an error and their sum. path: relative error by the length of the steps, NaN: unknown.
+void add_error(PageNumber& row, const MeshError& mesh, double path) {
   const bool exact = mesh.basis == kExact;
   const std::string kWhole = "the error against the exact answer holds all parts";
   const std::string kNoPath =
       "the length of the steps changes this number by an unknown amount: compare with a larger "
       "solver.substeps";
-  std::string basis = mesh.basis;
+  row.basis = mesh.basis;
   if (!exact && std::isnan(path)) {
-    basis += "; " + kNoPath;
+    row.basis += "; " + kNoPath;
   } else if (!exact && path > kRounded * std::abs(mesh.error)) {
-    basis = fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), basis, path);
+    row.basis =
+        fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), mesh.basis, path);
   }
-  row["basis"] = basis;
-  set_number(row, "reference", mesh.reference, basis);
-  set_number(row, "error", exact ? mesh.error : std::abs(mesh.error) + path, basis);
-  set_number(row, "mesh", exact ? kNaN : std::abs(mesh.error), exact ? kWhole : basis);
-  set_number(row, "path", exact ? kNaN : path, exact ? kWhole : kNoPath);
-  set_number(row, "uncertainty", exact ? 0.0 : mesh.uncertainty + path, basis);
+  row.reference = number_or(mesh.reference, row.basis);
+  row.error = number_or(exact ? mesh.error : std::abs(mesh.error) + path, row.basis);
+  row.mesh = number_or(exact ? kNaN : std::abs(mesh.error), exact ? kWhole : row.basis);
+  row.path = number_or(exact ? kNaN : path, exact ? kWhole : kNoPath);
+  row.uncertainty = number_or(exact ? 0.0 : mesh.uncertainty + path, row.basis);
 }
 
 }  // namespace
@@ -195,14 +195,14 @@ std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Me
   if (runs.empty()) runs.push_back(base);
   runs.back().fields = fields;
   std::vector<Json> results = to_json(pool.run(runs));
-  if (is_failed(results.back())) throw std::runtime_error(results.back()["message"].get<std::string>());
+  if (is_failed(results.back())) throw std::runtime_error(results.back().value("message", ""));
   std::erase_if(results, [](const Json& result) { return is_failed(result); });
   return results;
 }
 
-Json scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size,
-                   const ProcessPool& pool) {
-  Json found = Json::array();
+std::vector<StudyResult> scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes,
+                                       const PageSize& size, const ProcessPool& pool) {
+  std::vector<StudyResult> found;
   Study study{.source = base.scene,
               .name = "meshes",
               .scene = base.scene,
@@ -223,30 +223,35 @@ Json scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes
 }
 
 std::string words_of(const std::string& number) {
-  const auto* const found = std::ranges::find(kNumbers, number, &PageNumber::key);
+  const auto* const found = std::ranges::find(kNumbers, number, &NumberName::key);
   return found == std::end(kNumbers) ? number : found->words;
 }
 
-Json number_rows(const Scene& scene, const std::vector<Json>& results, const Json& study) {
+std::vector<PageNumber> number_rows(const Scene& scene, const std::vector<Json>& results,
+                                    const StudyResult& study) {
   const bool on_path = solver::depends_on_path(scene, solver::make_model(scene));
   const Json& answer = results.back();
-  Json rows = Json::array();
+  std::vector<PageNumber> rows;
   for (const auto& [key, words, unit] : kNumbers) {
     const double value = size_at(answer, key);
     if (!(value > 0.0) || is_rounding(answer, key) || stands_for_radius(answer, key)) continue;
-    Json& row = rows.emplace_back(Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}});
-    add_error(row, mesh_error(scene, results, study, key), path_error(answer, key, on_path));
+    rows.push_back({.key = key, .words = words, .unit = unit, .value = value});
+    add_error(rows.back(), mesh_error(scene, results, study, key), path_error(answer, key, on_path));
   }
   return rows;
 }
 
-Reference reference_of(const Json& answer, const Json& rows) {
-  std::vector<std::string> keys{answer["resolved"].value("number", "")};
+const PageNumber* find_row(const std::vector<PageNumber>& rows, const std::string& key) {
+  const auto found = std::ranges::find(rows, key, &PageNumber::key);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+Reference reference_of(const Json& answer, const std::vector<PageNumber>& rows) {
+  std::vector<std::string> keys{resolved_number(answer)};
   keys.insert(keys.end(), {"twist_angle", "displacement", "stick_radius", "stick_ratio", "approach"});
   for (const std::string& key : keys) {
-    for (const Json& row : rows) {
-      if (row["key"] == key && row["error"].is_number()) return {key, row["reference"], row["uncertainty"]};
-    }
+    const PageNumber* const row = find_row(rows, key);
+    if (row != nullptr && std::isfinite(row->error)) return {key, row->reference, row->uncertainty};
   }
   return {keys.back(), kNaN, kNaN};
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/report/scene_cost.hpp"
+#include "convergence/report/scene_description.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/json_text.hpp"
@@ -17,7 +20,6 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
-#include "convergence/runs/run_batch.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/uncertainty.hpp"
 #include "solver/input/input_error.hpp"
@@ -30,18 +32,19 @@ namespace fs = std::filesystem;
 using solver::Index;
 using solver::Scene;
 
-/// Parts of the limit load: next to nothing, and next to all of it.
+/// Parts of the limit moment, towards 0 and towards 1.
 const char* const kRatios[] = {"1e-9", "1e-6", "1e-3", "0.99", "0.999", "0.9999", "0.999999"};
 const Index kCoarseCells[] = {8, 12, 16};
-/// Solves that are rounded at random: enough to tell ten digits from twelve.
+/// Randomly rounded solves, enough to distinguish ten digits from twelve.
 constexpr int kRoundingSamples = 6;
-/// The coarsest mesh of the answer; the scene's own where its files have it.
+
+/// The override for the coarsest mesh of the answer; none where the files of the scene give the grid.
 std::vector<std::string> coarse_mesh(const Scene& scene, const Meshes& meshes) {
   if (meshes.given) return {};
   return {cells_override(scene, meshes.answer.front())};
 }
 
-/// What the uncertainty of the scene's numbers makes of the answer's.
+/// The uncertainty of the answer by the uncertainty of the scene's numbers.
 Json uncertainty(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
                  const std::vector<UncertainInput>& inputs) {
   const auto cache = std::make_shared<solver::SolveCache>();
@@ -53,7 +56,7 @@ Json uncertainty(const RunSpec& base, const Scene& scene, const Meshes& meshes, 
   });
 }
 
-/// The scene seen otherwise, on coarse meshes, and next to nothing and next to its limit.
+/// Equivalent scenes, coarse meshes, tiny and near-limit loads.
 std::vector<HardCase> hard_cases(const RunSpec& base, const Scene& scene, const Meshes& meshes) {
   std::vector<HardCase> cases;
   const auto add = [&](const char* family, const char* why, const std::string& name,
@@ -101,44 +104,89 @@ Scene on_finest_mesh(const RunSpec& base, const Scene& scene, const Meshes& mesh
   return solver::read_scene(base.scene, overrides);
 }
 
-/// The scene in words, and the meshes that the page of a long history leaves out.
-Json described(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size) {
-  Json found = describe(scene, on_finest_mesh(base, scene, meshes), base.scene);
+/// The scene in words, and the meshes that are omitted for a long history.
+SceneDescription described(const RunSpec& base, const Scene& scene, const Meshes& meshes,
+                           const PageSize& size) {
+  SceneDescription found = describe(scene, on_finest_mesh(base, scene, meshes), base.scene);
   if (is_long(scene, size) && !meshes.given) {
-    found["summary"].push_back(
-        {"Left out", fmt::format("meshes of more than {} cells, of a history of more than {} "
-                                 "steps (a page without --quick has them)",
-                                 meshes.answer.back(), size.long_history)});
+    found.summary.emplace_back("Left out",
+                               fmt::format("meshes of more than {} cells, of a history of more than {} "
+                                           "steps (a page without --quick has them)",
+                                           meshes.answer.back(), size.long_history));
   }
   return found;
 }
 
-/// Whether the answer is more than the pressure that a program found.
+/// A program may find only the pressure.
 bool has_tractions(const Json& answer) {
-  return !answer.contains("program") || answer["program"]["fields"] != "pressure";
+  const auto program = answer.find("program");
+  return program == answer.end() || program->value("fields", "") != "pressure";
 }
 
-/// What `check` says of the field that a program wrote.
+/// The verdict of `check` on the field of a program.
 Json check_program(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
                    const fs::path& fields) {
   CheckOptions options;
-  if (const Json& own = answer["program"]["own"]; own.contains("twist_angle"))
-    options.twist = own["twist_angle"];
+  const double twist = number_at(answer, "program.own.twist_angle");
+  if (std::isfinite(twist)) options.twist = twist;
   return to_json(check_field(on_finest_mesh(base, scene, meshes), fields, options));
 }
 
-/// By its certificate, or by what `check` says of the field of another program; by its pressure where there
-/// is no more.
-Finding judge_answer(const Json& page) {
-  const Json& answer = page["answer"];
-  if (!answer.contains("program")) return judge_certificate(answer);
-  return has_tractions(answer) ? judge_check(answer, page["check"]) : judge_pressure(answer);
+/// By its certificate; for another program by `check`, or by its pressure if it finds only that.
+Finding judge_answer(const Page& page) {
+  if (!page.answer.contains("program")) return judge_certificate(page.answer);
+  return page.check ? judge_check(page.answer, *page.check) : judge_pressure(page.answer);
 }
 
-/// What the page in a folder said first, before it is written anew; null where there is none to read.
+/// The headline of the page that is in the folder; null without one.
 Json earlier_headline(const fs::path& file) {
   const Json report = find_json(file);
-  return report.is_object() && report.contains("headline") ? report["headline"] : Json{};
+  return report.is_object() ? report.value("headline", Json{}) : Json{};
+}
+
+/// A scene of a page with all that its solves need.
+struct PageScene {
+  RunSpec base;
+  Scene scene;
+  PageSize size;
+  Meshes meshes;
+  bool own;  ///< this program solves it
+};
+
+PageScene page_scene(const PageRequest& request) {
+  Scene scene = solver::read_scene(request.base.scene, request.base.overrides);
+  const bool own = scene.program.empty();
+  const PageSize size = for_history(own ? request.size : for_program(request.size), scene);
+  Meshes meshes = meshes_of(scene, size);
+  return {request.base, std::move(scene), size, std::move(meshes), own};
+}
+
+/// Error against time, answers of other programs, direct sums against convolution. A scene whose files give
+/// its grid has none of them.
+void add_costs(Page& page, const PageScene& at, const Reference& reference,
+               const std::vector<BesideMethod>& programs, const ProcessPool& pool) {
+  const auto& [base, scene, size, meshes, own] = at;
+  if (meshes.given) return;
+  page.cost = error_against_time(base, scene, meshes.answer, reference, size, pool);
+  if (!programs.empty()) {
+    const Meshes coarse = meshes_of(scene, for_program(size));
+    page.programs =
+        answers_of_programs(base, scene, coarse.answer, {programs, page.numbers, reference.number}, pool);
+  }
+  if (own) page.operators = direct_against_dcfft(base, scene, size, pool);
+}
+
+/// Hard variants of the scene, by this program or by another one.
+Json hard_variants(const PageScene& at, const Json& answer, const std::vector<BesideMethod>& programs,
+                   const ProcessPool& pool) {
+  HardOptions options{.variants = at.own, .finer_meshes = at.own && at.size.finer_meshes};
+  options.methods = programs;
+  if (!at.own) {
+    const std::string name = answer.at("program").value("name", "");
+    options.methods = {{name, program_override(at.scene.program), true}};
+  }
+  const RunSpec base = at.own ? at.base : changed(at.base, {kNoProgram});
+  return to_json(run_hard_cases(hard_cases(base, at.scene, at.meshes), options, pool));
 }
 
 }  // namespace
@@ -194,78 +242,62 @@ WantedError read_wanted_error(const std::string& word) {
   return {quantity == "twist" ? "twist_angle" : quantity, error};
 }
 
-Json scene_page(const PageRequest& request, const fs::path& folder, const ProcessPool& pool) {
-  const RunSpec& base = request.base;
-  const Scene scene = solver::read_scene(base.scene, base.overrides);
-  const bool own = scene.program.empty();
+Page scene_page(const PageRequest& request, const fs::path& folder, const ProcessPool& pool) {
+  const PageScene at = page_scene(request);
+  const auto& [base, scene, size, meshes, own] = at;
   if (!own && !request.uncertain.empty())
     throw solver::InputError("--uncertain", "not beside solver.program; allowed: without it");
   const std::vector<UncertainInput> uncertain =
       uncertain_inputs(base.scene, base.overrides, request.uncertain);
-  const PageSize size = for_history(own ? request.size : for_program(request.size), scene);
-  const Meshes meshes = meshes_of(scene, size);
   solver::make_folder(folder);
   const fs::path fields = folder / "answer.h5";
   const std::vector<Json> results = solve_answer(base, scene, meshes, fields, pool);
-  const Json& answer = results.back();
-  Json page;
-  page["provenance"] = provenance(std::max(1, scene.threads));
-  page["scene"] = described(base, scene, meshes, size);
-  page["answer"] = answer;
-  if (!own && has_tractions(answer)) page["check"] = check_program(base, scene, meshes, answer, fields);
+  Page page{.provenance = provenance(std::max(1, scene.threads)),
+            .scene = described(base, scene, meshes, size),
+            .answer = results.back()};
+  if (!own && has_tractions(page.answer))
+    page.check = check_program(base, scene, meshes, page.answer, fields);
   std::vector<Finding> findings{judge_answer(page)};
-  page["studies"] = scene_studies(base, scene, meshes, size, pool);
-  page["numbers"] = number_rows(scene, results, page["studies"].front());
-  const Reference reference = reference_of(answer, page["numbers"]);
-  for (const WantedError& each : request.wanted) findings.push_back(judge_wanted(each, page["numbers"]));
+  page.studies = scene_studies(base, scene, meshes, size, pool);
+  page.numbers = number_rows(scene, results, page.studies.front());
+  const Reference reference = reference_of(page.answer, page.numbers);
+  for (const WantedError& each : request.wanted) findings.push_back(judge_wanted(each, page.numbers));
   if (std::ranges::find(request.wanted, reference.number, &WantedError::quantity) == request.wanted.end())
-    findings.push_back(judge_accuracy(page["numbers"], reference.number));
-  if (!uncertain.empty()) page["uncertainty"] = uncertainty(base, scene, meshes, answer, uncertain);
-  findings.push_back(judge_order(page["studies"], reference.number, words_of(reference.number)));
-  if (!meshes.given) page["cost"] = error_against_time(base, scene, meshes.answer, reference, size, pool);
-  if (!meshes.given && !request.beside.empty()) {
-    const Meshes coarse = meshes_of(scene, for_program(size));
-    page["programs"] =
-        answers_beside(base, scene, coarse.answer, {request.beside, page["numbers"], reference.number}, pool);
-  }
-  if (!meshes.given && own) page["operators"] = direct_against_dcfft(base, scene, size, pool);
-  if (own || has_tractions(answer)) {
-    HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
-    options.methods = request.beside;
-    if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
-    page["hard"] = to_json(
-        run_hard_cases(hard_cases(own ? base : changed(base, {kNoProgram}), scene, meshes), options, pool));
-    findings.push_back(own ? judge_hard(page["hard"], "Hard variants") : judge_hard_beside(page["hard"]));
+    findings.push_back(judge_accuracy(page.numbers, reference.number));
+  if (!uncertain.empty()) page.uncertainty = uncertainty(base, scene, meshes, page.answer, uncertain);
+  findings.push_back(judge_order(page.studies.front(), reference.number, words_of(reference.number)));
+  add_costs(page, at, reference, request.beside, pool);
+  if (own || has_tractions(page.answer)) {
+    page.hard = hard_variants(at, page.answer, request.beside, pool);
+    findings.push_back(own ? judge_hard(*page.hard, "Hard variants") : judge_hard_beside(*page.hard));
   }
   if (own) {
-    page["digits"] = to_json(
+    page.digits = to_json(
         rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool));
   }
   if (request.validation) {
-    page["paper"] = validate(*request.validation, folder, pool);
-    for (Finding& each : judge_validation(page["paper"])) findings.push_back(std::move(each));
+    page.paper = validate(*request.validation, folder, pool);
+    std::ranges::move(judge_validation(*page.paper), std::back_inserter(findings));
   }
-  page["headline"] = with_changes(headline_of(findings, page), earlier_headline(folder / "report.json"));
-  write_json_file(folder / "report.json", page);
+  const fs::path file = folder / "report.json";
+  page.headline = with_changes(headline_of(std::move(findings), page), earlier_headline(file));
+  write_json_file(file, to_json(page));
   return page;
 }
 
-std::vector<JunitCase> page_cases(const Json& page) {
+std::vector<JunitCase> page_cases(const Page& page) {
   std::vector<JunitCase> cases;
-  const Json& checks = page["headline"]["counts"]["checks"];
-  for (const Json& line : page["headline"]["lines"]) {
-    const std::string what = line[0];
-    const bool fails = checks[what] == "fails";
-    const bool holds = checks[what] == "holds";
-    cases.push_back({.suite = page["scene"]["name"],
+  for (const auto& [what, line, shown] : page.headline.findings) {
+    const bool holds = shown == Shown::holds;
+    cases.push_back({.suite = page.scene.name,
                      .classname = "report",
                      .name = what,
-                     .verdict = holds   ? CaseVerdict::passed
-                                : fails ? CaseVerdict::failure
-                                        : CaseVerdict::skipped,
+                     .verdict = holds                   ? CaseVerdict::passed
+                                : shown == Shown::fails ? CaseVerdict::failure
+                                                        : CaseVerdict::skipped,
                      .type = "page",
-                     .message = holds ? "" : line[1].get<std::string>(),
-                     .shown = line[1]});
+                     .message = holds ? "" : line,
+                     .shown = line});
   }
   return cases;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "convergence/hard/hard_run.hpp"
+#include "convergence/report/page.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/results/verdict_files.hpp"
 #include "convergence/runs/process_pool.hpp"
@@ -50,13 +51,17 @@ struct PageRequest {
   std::optional<Validation> validation = {};  ///< of the paper; its scene is then the page's
 };
 
-/// Solves what the page shows and judges it: fills `folder` with report.json and answer.h5, the fields on the
-/// finest mesh, and returns report.json's content, a page of docs/schema/report.schema.json. Throws
-/// InputError for a scene that cannot be read and for a wanted quantity that its result does not have;
+/// Solves all that the page shows and judges it, then writes report.json and answer.h5 (the fields on the
+/// finest mesh) to the folder.
+///   1. The answer on its meshes; studies of meshes and tolerances; each number with its error.
+///   2. Error against time; equivalent scenes, coarse meshes and extreme loads; digits left by rounding.
+///   3. The paper's validation, if it is requested.
+///   4. The headline: findings and changes since the page that was in the folder.
+/// Throws InputError for a scene that cannot be read and for a wanted quantity that the result does not have;
 /// std::runtime_error where the scene itself has no answer, and as the pool does.
-Json scene_page(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
+Page scene_page(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
 
-/// A case for each thing that the verdict rests on.
-std::vector<JunitCase> page_cases(const Json& page);
+/// A case for each finding.
+std::vector<JunitCase> page_cases(const Page& page);
 
 }  // namespace slipstick::convergence

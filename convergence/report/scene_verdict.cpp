@@ -6,7 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/report/scene_numbers.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
@@ -21,81 +22,79 @@ constexpr double kWorseOrder = 0.25;
 /// contact leave a thousandth.
 constexpr double kOpenUnderPressure = 1e-2;
 
-/// The passing gate that is nearest to its bound; null where none has a bound in numbers.
-const Json* nearest_to_bound(const Json& gates) {
-  const Json* found = nullptr;
-  for (const Json& gate : gates) {
-    const bool counts = gate["outcome"] == "passed" && gate.contains("factor") && gate["factor"].is_number();
-    if (counts && (found == nullptr || gate["factor"] > (*found)["factor"])) found = &gate;
+/// The passing gate that is nearest to its bound; nullptr where none has a bound in numbers.
+const Judgement* nearest_to_bound(const std::vector<Judgement>& gates) {
+  const Judgement* found = nullptr;
+  for (const Judgement& gate : gates) {
+    const bool counts = gate.outcome == Outcome::passed && std::isfinite(gate.factor);
+    if (counts && (found == nullptr || gate.factor > found->factor)) found = &gate;
   }
   return found;
 }
 
-/// Names those that are not as they should be.
-std::string wrong_gates(const Json& gates) {
+/// The gates that fail, pass unexpectedly or are refused.
+std::string wrong_gates(const std::vector<Judgement>& gates) {
   std::string line;
-  for (const Json& gate : gates) {
-    const Json& outcome = gate["outcome"];
-    if (outcome == "failed" || outcome == "passed unexpectedly" || outcome == "refused") {
-      line += fmt::format("; {} {}", gate["id"].get<std::string>(), outcome.get<std::string>());
+  for (const Judgement& gate : gates) {
+    if (gate.outcome == Outcome::failed || gate.outcome == Outcome::passed_unexpectedly ||
+        gate.outcome == Outcome::refused) {
+      line += fmt::format("; {} {}", gate.gate.id, to_string(gate.outcome));
     }
   }
   return line;
 }
 
-Finding judge_literature(const Json& all) {
-  const Json& counts = all["counts"];
-  return {
-      "Literature",
-      fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
-                  counts["passed"].get<int>(), all["gates"].size(), counts["failed as expected"].get<int>()) +
-          wrong_gates(all["gates"]),
-      shown(all["exit_code"] == 0)};
+long number_with(const std::vector<Judgement>& gates, Outcome outcome) {
+  return std::ranges::count(gates, outcome, &Judgement::outcome);
 }
 
-Finding judge_gates(const Json& all) {
-  const Json& gates = all["gates"];
-  std::string line = fmt::format("{} of {} pass", all["counts"]["passed"].get<int>(), gates.size());
-  if (const int expected = all["counts"]["failed as expected"]; expected > 0) {
+Finding judge_literature(const std::vector<Judgement>& gates) {
+  return {"Literature",
+          fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
+                      number_with(gates, Outcome::passed), gates.size(),
+                      number_with(gates, Outcome::failed_as_expected)) +
+              wrong_gates(gates),
+          shown(exit_code(gates) == 0)};
+}
+
+Finding judge_gates(const std::vector<Judgement>& gates) {
+  std::string line = fmt::format("{} of {} pass", number_with(gates, Outcome::passed), gates.size());
+  if (const long expected = number_with(gates, Outcome::failed_as_expected); expected > 0) {
     line += fmt::format(", {} fails as it should", expected);
   }
   line += wrong_gates(gates);
-  if (const Json* const nearest = nearest_to_bound(gates); nearest != nullptr) {
-    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it",
-                        (*nearest)["id"].get<std::string>(), 100.0 * (*nearest)["factor"].get<double>());
+  if (const Judgement* const nearest = nearest_to_bound(gates); nearest != nullptr) {
+    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it", nearest->gate.id,
+                        100.0 * nearest->factor);
   }
-  return {"Gates", line, shown(all["exit_code"] == 0)};
+  return {"Gates", line, shown(exit_code(gates) == 0)};
 }
 
-Finding judge_known_fields(const Json& peers) {
+Finding judge_known_fields(const std::vector<KnownField>& peers) {
   Finding found{"Fields of others", ""};
-  for (const Json& peer : peers) {
-    found.line += fmt::format("{}{} is {}", found.line.empty() ? "" : ", ",
-                              peer["program"].get<std::string>(), peer["verdict"].get<std::string>());
-    if (peer["verdict"] == peer["expected"]) continue;
-    found.line += fmt::format(" (known to be {})", peer["expected"].get<std::string>());
+  for (const KnownField& peer : peers) {
+    found.line += fmt::format("{}{} is {}", found.line.empty() ? "" : ", ", peer.program, peer.verdict);
+    if (peer.verdict == peer.expected) continue;
+    found.line += fmt::format(" (known to be {})", peer.expected);
     found.shown = Shown::fails;
   }
   return found;
 }
 
-/// How far a number of the page may be off, and how that is known.
-std::string error_text(const Json& row) {
-  const std::string basis = row["basis"];
-  const double error = size_at(row, "error");
-  if (std::isnan(error)) return fmt::format("may be off by an unknown part ({})", basis);
-  return fmt::format("{} off by {:.1e} ({})", row["mesh"].is_null() ? "is" : "may be", error, basis);
+/// The error of a number and how it is known.
+std::string error_text(const PageNumber& row) {
+  const double error = std::abs(row.error);
+  if (std::isnan(error)) return fmt::format("may be off by an unknown part ({})", row.basis);
+  return fmt::format("{} off by {:.1e} ({})", std::isnan(row.mesh) ? "is" : "may be", error, row.basis);
 }
 
-/// The setting that makes the larger part of an error as small as half of what is wanted.
-std::string cure(const Json& row, double wanted) {
-  const double path = number_at(row, "path");
-  if (path > number_at(row, "mesh")) {
+/// The setting that halves the wanted error's larger part.
+std::string cure(const PageNumber& row, double wanted) {
+  if (row.path > row.mesh) {
     return fmt::format("; set solver.substeps {:.0f} times as high, or see what solve --accuracy {:g} takes",
-                       std::ceil(2.0 * path / wanted), wanted);
+                       std::ceil(2.0 * row.path / wanted), wanted);
   }
-  if (row["error"].is_null()) return "";
-  return "; take more grid.cells, and a page without --quick";
+  return std::isnan(row.error) ? "" : "; take more grid.cells, and a page without --quick";
 }
 
 /// Whether two values differ by more than machines and clocks do.
@@ -113,8 +112,8 @@ std::string value_text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// What stands in one of two objects with another value, sentence by sentence; `where` names the objects.
-void compare(const Json& now, const Json& before, const std::string& where, Json& found) {
+/// The differences of two objects, a sentence each; `where` names the objects.
+void compare(const Json& now, const Json& before, const std::string& where, std::vector<std::string>& found) {
   for (const auto& [key, value] : now.items()) {
     std::string name = where + key;
     std::ranges::replace(name, '_', ' ');
@@ -130,40 +129,49 @@ void compare(const Json& now, const Json& before, const std::string& where, Json
   }
 }
 
+std::string text_of(const Json& object, const char* key) { return object.value(key, ""); }
+
+/// The number of cases with a verdict.
+int cases(const Json& counts, const char* verdict) { return counts.value(verdict, 0); }
+
+/// "; family case: reason" of a row of hard cases.
+std::string case_text(const Json& row, const std::string& reason) {
+  return fmt::format("; {} {}: {}", text_of(row, "family"), text_of(row, "case"), reason);
+}
+
 }  // namespace
 
 Finding judge_certificate(const Json& answer) {
   const bool history = answer.contains("history");
   const double gap = number_at(answer, history ? "history.worst_gap" : "certificate.gap");
   const double allowed = std::max(number_at(answer, "tolerance"), number_at(answer, "certificate.rounding"));
-  const bool paper = answer["method"] == "paper";
+  const bool paper = text_of(answer, "method") == "paper";
   const bool certified = is_converged(answer) && (paper ? std::isfinite(gap) : gap <= allowed);
   return {"Certificate",
-          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed",
-                      is_converged(answer) ? "converged" : answer["status"].get<std::string>(),
-                      answer["cells"][0].get<int>(), answer["cells"][1].get<int>(), gap, allowed),
+          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed", text_of(answer, "status"),
+                      number_at(answer, "cells[0]"), number_at(answer, "cells[1]"), gap, allowed),
           shown(certified)};
 }
 
-Finding judge_order(const Json& studies, const std::string& number, const std::string& words) {
+Finding judge_order(const StudyResult& study, const std::string& number, const std::string& words) {
   const auto open = [&](const std::string& why) {
     return Finding{"Orders", fmt::format("not shown by the {}: {}", words, why), Shown::open};
   };
-  for (const Json& series : studies.front()["series"]) {
-    for (const std::string& quantity : {number + "_error", std::string("twist_error"), number}) {
-      if (!series["order"].contains(quantity) || (quantity == "twist_error" && number != "twist_angle"))
-        continue;
-      const Json& order = series["order"][quantity];
-      const std::string verdict = order["verdict"];
-      const std::string why = order["why"];
-      const double expected = number_at(order, "expected");
-      const bool fitted =
-          verdict == "asymptotic" || verdict == "superconvergent" || verdict == "preasymptotic";
-      if (!fitted || std::isnan(expected)) return open(why);
-      const std::string line = fmt::format("of the {}: {}", words, why);
-      if (number_at(order, "high") < expected - kWorseOrder) return {"Orders", line, Shown::fails};
-      const bool reaches = verdict != "preasymptotic" || number_at(order, "low") >= expected - kWorseOrder;
-      if (!reaches) return open(why);
+  std::vector<std::string> paths{number + "_error", number};
+  if (number == "twist_angle") paths.insert(paths.begin() + 1, "twist_error");
+  for (const SeriesResult& series : study.series) {
+    for (const std::string& path : paths) {
+      const auto found = std::ranges::find(series.quantities, path, &QuantityResult::path);
+      if (found == series.quantities.end()) continue;
+      const Order& order = found->order;
+      const double expected = found->expected.value;
+      const bool preasymptotic = order.verdict == OrderVerdict::preasymptotic;
+      const bool fitted = preasymptotic || order.verdict == OrderVerdict::asymptotic ||
+                          order.verdict == OrderVerdict::superconvergent;
+      if (!fitted || std::isnan(expected)) return open(order.why);
+      const std::string line = fmt::format("of the {}: {}", words, order.why);
+      if (order.high < expected - kWorseOrder) return {"Orders", line, Shown::fails};
+      if (preasymptotic && !(order.low >= expected - kWorseOrder)) return open(order.why);
       return {"Orders", line};
     }
   }
@@ -171,27 +179,25 @@ Finding judge_order(const Json& studies, const std::string& number, const std::s
 }
 
 Finding judge_hard(const Json& hard, const std::string& what) {
-  const Json& counts = hard["counts"];
+  const Json& counts = hard.at("counts");
+  const Json& rows = hard.at("rows");
+  const int wrong = cases(counts, "wrong");
+  const int not_converged = cases(counts, "not_converged");
   std::string line =
       fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
-                  counts["certified"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
-                  counts["not_converged"].get<int>(), counts["wrong"].get<int>());
-  for (const Json& row : hard["rows"]) {
-    if (row["verdict"] == "wrong" || row["verdict"] == "not_converged") {
-      line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
-                          row["reason"].get<std::string>());
-    }
+                  cases(counts, "certified"), rows.size(), cases(counts, "refused"), not_converged, wrong);
+  for (const Json& row : rows) {
+    const std::string verdict = text_of(row, "verdict");
+    if (verdict == "wrong" || verdict == "not_converged") line += case_text(row, text_of(row, "reason"));
   }
-  return {what, line, shown(counts["wrong"] == 0 && counts["not_converged"] == 0)};
+  return {what, line, shown(wrong == 0 && not_converged == 0)};
 }
 
 Finding judge_check(const Json& answer, const Json& check) {
-  const bool good = check["verdict"] == "good";
-  const std::string why =
-      fmt::format("{}: {}", check["verdict"].get<std::string>(), check["why"].get<std::string>());
-  if (is_converged(answer)) return {"Field", why, shown(good)};
-  return {"Field", fmt::format("not converged: {}; it is {}", answer["message"].get<std::string>(), why),
-          Shown::fails};
+  const std::string verdict = text_of(check, "verdict");
+  const std::string why = fmt::format("{}: {}", verdict, text_of(check, "why"));
+  if (is_converged(answer)) return {"Field", why, shown(verdict == "good")};
+  return {"Field", fmt::format("not converged: {}; it is {}", text_of(answer, "message"), why), Shown::fails};
 }
 
 Finding judge_pressure(const Json& answer) {
@@ -203,139 +209,111 @@ Finding judge_pressure(const Json& answer) {
 }
 
 Finding judge_hard_beside(const Json& hard) {
-  const std::string name = hard["methods"].begin().key();
-  const Json& counts = hard["methods"][name];
-  const int other = counts["other_direction"].get<int>() + counts["other_answer"].get<int>();
+  const auto method = hard.at("methods").begin();
+  const Json& counts = method.value();
+  const Json& rows = hard.at("rows");
+  const int other = cases(counts, "other_direction") + cases(counts, "other_answer");
   std::string line = fmt::format(
       "{} of {} agree with this program's, {} refused, {} not converged or failed, {} are other answers",
-      counts["agrees"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
-      counts["not_converged"].get<int>(), other);
-  for (const Json& row : hard["rows"]) {
-    const Json& beside = row["methods"][name];
-    if (beside["verdict"] != "other_direction" && beside["verdict"] != "other_answer") continue;
-    line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
-                        beside["reason"].get<std::string>());
+      cases(counts, "agrees"), rows.size(), cases(counts, "refused"), cases(counts, "not_converged"), other);
+  for (const Json& row : rows) {
+    const Json& found = row.at("methods").at(method.key());
+    const std::string verdict = text_of(found, "verdict");
+    if (verdict == "other_direction" || verdict == "other_answer")
+      line += case_text(row, text_of(found, "reason"));
   }
   return {"Hard variants", line, shown(other == 0)};
 }
 
-Finding judge_accuracy(const Json& numbers, const std::string& number) {
-  for (const Json& row : numbers) {
-    if (row["key"] != number) continue;
-    const double error = size_at(row, "error");
-    const Shown found = error <= solver::kPoorlyResolved ? Shown::holds : Shown::open;
-    return {"Accuracy",
-            fmt::format("the {} {}{}", row["words"].get<std::string>(), error_text(row),
-                        found == Shown::holds ? "" : cure(row, solver::kPoorlyResolved)),
-            found};
-  }
-  return {"Accuracy", "how far the answer may be off is not known", Shown::open};
+Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string& number) {
+  const PageNumber* const row = find_row(numbers, number);
+  if (row == nullptr) return {"Accuracy", "how far the answer may be off is not known", Shown::open};
+  const bool holds = std::abs(row->error) <= solver::kPoorlyResolved;
+  return {"Accuracy",
+          fmt::format("the {} {}{}", row->words, error_text(*row),
+                      holds ? "" : cure(*row, solver::kPoorlyResolved)),
+          holds ? Shown::holds : Shown::open};
 }
 
-Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
-  for (const Json& row : numbers) {
-    if (row["key"] != wanted.quantity) continue;
-    const bool holds = size_at(row, "error") <= wanted.error;
-    return {fmt::format("Error of the {}", row["words"].get<std::string>()),
-            fmt::format("it {}, {:g} wanted{}", error_text(row), wanted.error,
-                        holds ? "" : cure(row, wanted.error)),
+Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& numbers) {
+  if (const PageNumber* const row = find_row(numbers, wanted.quantity)) {
+    const bool holds = std::abs(row->error) <= wanted.error;
+    return {fmt::format("Error of the {}", row->words),
+            fmt::format("it {}, {:g} wanted{}", error_text(*row), wanted.error,
+                        holds ? "" : cure(*row, wanted.error)),
             shown(holds)};
   }
   std::vector<std::string> keys;
-  for (const Json& row : numbers) keys.push_back(row["key"]);
+  for (const PageNumber& row : numbers) keys.push_back(row.key);
   throw solver::InputError("--want", wanted.quantity, "not a number of this result",
                            fmt::format("{}", fmt::join(keys, ", ")));
 }
 
-std::vector<Finding> judge_validation(const Json& paper) {
+std::vector<Finding> judge_validation(const PaperValidation& paper) {
   Finding gates{"Gates", "left out of a quick page; make gate runs them"};
-  if (paper.contains("gates")) gates = judge_gates(paper["gates"]);
-  return {std::move(gates), judge_hard(paper["hard"], "Hard scenes"), judge_known_fields(paper["peers"]),
-          judge_literature(paper["literature"])};
+  if (paper.gates) gates = judge_gates(*paper.gates);
+  return {std::move(gates), judge_hard(paper.hard, "Hard scenes"), judge_known_fields(paper.peers),
+          judge_literature(paper.literature)};
 }
 
-Json headline_of(const std::vector<Finding>& findings, const Json& page) {
-  constexpr const char* kChecks[] = {"holds", "open", "fails"};
-  constexpr const char* kVerdicts[] = {"good", "open", "bad"};
-  Shown worst = Shown::holds;
-  Json lines = Json::array();
-  Json checks = Json::object();
-  for (const auto& [what, line, found] : findings) {
-    worst = std::max(worst, found);
-    lines.push_back({what, line});
-    checks[what] = kChecks[static_cast<int>(found)];
-  }
-  Json counts{{"checks", checks}};
-  if (page.contains("hard")) counts["hard"] = page["hard"]["counts"];
-  if (page.contains("paper")) {
-    const Json& paper = page["paper"];
-    counts["hard_scenes"] = paper["hard"]["counts"];
-    counts["gates"] = nullptr;
-    counts["gates_reason"] = "left out of a quick page";
-    if (paper.contains("gates")) {
-      counts["gates"] = paper["gates"]["counts"];
-      counts.erase("gates_reason");
+Headline headline_of(std::vector<Finding> findings, const Page& page) {
+  Headline headline{.findings = std::move(findings), .commit = text_of(page.provenance, "commit")};
+  Json& counts = headline.counts;
+  if (page.hard) counts.update(Json{{"hard", page.hard->at("counts")}});
+  if (page.paper) {
+    counts.update(Json{{"hard_scenes", page.paper->hard.at("counts")}});
+    if (page.paper->gates) {
+      counts.update(Json{{"gates", counts_json(*page.paper->gates)}});
+    } else {
+      set_missing(counts, "gates", "left out of a quick page");
     }
   }
-  Json numbers = Json::object();
-  for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
-  return {{"verdict", kVerdicts[static_cast<int>(worst)]},
-          {"commit", page["provenance"]["commit"]},
-          {"lines", lines},
-          {"numbers", numbers},
-          {"counts", counts}};
+  for (const PageNumber& row : page.numbers) headline.numbers.emplace_back(row.key, row.value);
+  return headline;
 }
 
-Json changes(const Json& now, const Json& before) {
-  Json found = Json::array();
-  if (differs(now["verdict"], before["verdict"])) {
-    found.push_back(fmt::format("the verdict was {}", value_text(before["verdict"])));
-  }
-  compare(now["counts"], before["counts"], "", found);
-  compare(now["numbers"], before["numbers"], "", found);
+std::vector<std::string> changes(const Headline& now, const Json& before) {
+  std::vector<std::string> found;
+  const std::string verdict = text_of(before, "verdict");
+  if (now.verdict() != verdict) found.push_back(fmt::format("the verdict was {}", verdict));
+  const Json json = to_json(now);
+  for (const char* part : {"counts", "numbers"}) compare(json.at(part), before.at(part), "", found);
   return found;
 }
 
-Json with_changes(Json now, const Json& before) {
-  if (before.is_null()) {
-    now["since"] = nullptr;
-    now["since_reason"] = "the first page in its folder";
-    now["changes"] = Json::array();
-    return now;
-  }
-  now["changes"] = changes(now, before);
-  now["since"] = before["commit"];
-  if (now["changes"].empty() && now["commit"] == before["commit"]) {
-    for (const char* key : {"since", "since_reason", "changes"}) {
-      if (before.contains(key)) now[key] = before[key];
-    }
+Headline with_changes(Headline now, const Json& before) {
+  if (before.is_null()) return now;
+  now.changes = changes(now, before);
+  now.since = text_of(before, "commit");
+  if (now.changes.empty() && now.commit == now.since) {
+    const Json since = before.value("since", Json{});
+    now.since = since.is_null() ? "" : since.get<std::string>();
+    now.changes = before.value("changes", now.changes);
   }
   return now;
 }
 
-std::string headline_text(const Json& headline) {
+std::string headline_text(const Headline& headline) {
   constexpr std::size_t kShownChanges = 3;
-  const std::string verdict = headline["verdict"];
+  const std::string verdict = headline.verdict();
   std::string text = verdict == "good" ? "All is well\n" : "NOT all is well\n";
   if (verdict == "open") {
     std::vector<std::string> open;
-    for (const auto& [what, found] : headline["counts"]["checks"].items()) {
-      if (found == "open") open.push_back(what);
+    for (const Finding& finding : headline.findings) {
+      if (finding.shown == Shown::open) open.push_back(finding.what);
     }
     text = fmt::format("Nothing is wrong, but open: {}\n", fmt::join(open, ", "));
   }
   const auto add = [&](const std::string& what, const std::string& line) {
     text += fmt::format("  {:<16} {}\n", what, line);
   };
-  for (const Json& line : headline["lines"]) add(line[0].get<std::string>(), line[1].get<std::string>());
-  if (headline["since"].is_null()) return text;
-  const std::string since = headline["since"];
-  const Json& found = headline["changes"];
-  if (found.empty()) add("Changes", fmt::format("none since the page of commit {}", since));
-  for (std::size_t i = 0; i < std::min(found.size(), kShownChanges); ++i) {
-    add(i == 0 ? "Changes" : "",
-        fmt::format("since the page of commit {}: {}", since, found[i].get<std::string>()));
-  }
+  for (const Finding& finding : headline.findings) add(finding.what, finding.line);
+  if (headline.since.empty()) return text;
+  const std::vector<std::string>& found = headline.changes;
+  const std::string since = "since the page of commit " + headline.since;
+  if (found.empty()) add("Changes", "none " + since);
+  for (std::size_t i = 0; i < std::min(found.size(), kShownChanges); ++i)
+    add(i == 0 ? "Changes" : "", fmt::format("{}: {}", since, found[i]));
   if (found.size() > kShownChanges) add("", fmt::format("and {} more", found.size() - kShownChanges));
   return text;
 }

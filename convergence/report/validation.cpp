@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -12,12 +13,13 @@
 #include "analytic/torsion.hpp"
 #include "convergence/check/check.hpp"
 #include "convergence/gates/gate_reader.hpp"
-#include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
+#include "convergence/report/errata.hpp"
+#include "convergence/report/exact_curves.hpp"
+#include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/run_batch.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -49,9 +51,9 @@ Json exact_profile(const analytic::TorsionState& state) {
 
 /// The scene at one mesh, pressure model and load, by one method.
 struct MeshPoint {
-  Index cells;
-  std::string pressure;
-  double moment_ratio;
+  Index cells = 0;
+  std::string pressure = {};
+  double moment_ratio = 0.0;
   std::string method = "coulomb";
 
   std::vector<std::string> overrides() const {
@@ -65,7 +67,7 @@ struct MeshPoint {
 
 std::string fields_file(double moment_ratio) { return fmt::format("fields-{}.h5", moment_ratio); }
 
-/// What the paper's sphere may have besides, as users set it.
+/// The paper's sphere under another law of friction, with its overrides.
 struct Beyond {
   const char* name;
   std::vector<std::string> overrides;
@@ -87,13 +89,13 @@ using Sections = std::map<std::string, std::vector<RunSpec>>;
 Sections page_runs(const fs::path& scene, const fs::path& scenes, const ValidationSize& size,
                    const fs::path& folder) {
   Sections runs;
-  const auto add = [&](const char* section, const MeshPoint& point) {
-    runs[section].push_back({.scene = scene, .overrides = point.overrides()});
+  const auto add = [&](const char* section, const MeshPoint& point) -> RunSpec& {
+    return runs[section].emplace_back(RunSpec{.scene = scene, .overrides = point.overrides()});
   };
   for (const double ratio : kProfileRatios) {
-    add("profiles", {size.loading_cells, "solved", ratio});
-    runs["profiles"].back().fields = folder / fields_file(ratio);
-    runs["profiles"].back().profile = true;
+    RunSpec& run = add("profiles", {size.loading_cells, "solved", ratio});
+    run.fields = folder / fields_file(ratio);
+    run.profile = true;
   }
   for (const char* method : {"coulomb", "paper"}) {
     for (const double ratio : size.moment_ratios)
@@ -107,82 +109,76 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
   for (const char* method : kMethods) {
     for (const Index cells : size.mesh_cells) add("methods", {cells, "solved", kMethodsRatio, method});
     for (const Index cells : size.ellipse_cells) {
-      runs["ellipse"].push_back({.scene = scenes / "ellipse.toml",
-                                 .overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2),
-                                               MeshPoint::method_override(method)}});
+      RunSpec& run = add("ellipse", {});
+      run.scene = scenes / "ellipse.toml";
+      run.overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2),
+                       MeshPoint::method_override(method)};
     }
   }
   for (const Beyond& beyond : beyond_the_paper()) {
     for (const Index cells : size.mesh_cells) {
-      add(beyond.name, {cells, "solved", kBeyondRatio});
-      RunSpec& run = runs[beyond.name].back();
+      RunSpec& run = add(beyond.name, {cells, "solved", kBeyondRatio});
       run.overrides.insert(run.overrides.end(), beyond.overrides.begin(), beyond.overrides.end());
       run.profile = cells == size.mesh_cells.back();
     }
   }
   add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
-  runs["cycle"].push_back({.scene = scenes / "torsion_loop.toml",
-                           .overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)}});
+  RunSpec& cycle = add("cycle", {});
+  cycle.scene = scenes / "torsion_loop.toml";
+  cycle.overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)};
   return runs;
 }
 
-/// The results of each section, all computed side by side. Throws std::runtime_error where one is missing.
+/// The results of each section, all solved in parallel. Throws std::runtime_error where one is missing.
 std::map<std::string, std::vector<Json>> solve_all(const Sections& sections, const ProcessPool& pool) {
-  std::map<std::string, std::vector<Json>> found;
-  RunBatch batch;
-  for (const auto& [name, runs] : sections) {
-    for (const RunSpec& run : runs) {
-      batch.add(run, [&into = found[name]](const Json& result) {
-        if (is_failed(result)) {
-          throw std::runtime_error(
-              fmt::format("{}: {}", result["run"].get<std::string>(), result["message"].get<std::string>()));
-        }
-        into.push_back(result);
-      });
-    }
+  std::vector<RunSpec> runs;
+  for (const auto& [name, of_section] : sections)
+    runs.insert(runs.end(), of_section.begin(), of_section.end());
+  std::vector<Json> results = to_json(pool.run(runs));
+  for (const Json& result : results) {
+    if (is_failed(result))
+      throw std::runtime_error(fmt::format("{}: {}", result.value("run", ""), result.value("message", "")));
   }
-  batch.run(pool);
+  std::map<std::string, std::vector<Json>> found;
+  auto result = results.begin();
+  for (const auto& [name, of_section] : sections) {
+    const auto end = result + static_cast<std::ptrdiff_t>(of_section.size());
+    found[name].assign(std::make_move_iterator(result), std::make_move_iterator(end));
+    result = end;
+  }
   return found;
 }
 
 Json profile(double moment_ratio, Json result) {
-  const Json computed = result["profile"];
+  Json computed = result.at("profile");
   result.erase("profile");
   const analytic::TorsionState state = analytic::from_moment_ratio(moment_ratio);
   return {{"moment_ratio", moment_ratio},        {"stick_ratio", state.stick_ratio},
-          {"exact", exact_profile(state)},       {"computed", computed},
+          {"exact", exact_profile(state)},       {"computed", std::move(computed)},
           {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
 }
 
-/// Some keys of each result.
+/// Some keys of a result.
+Json row_of(const Json& result, const std::vector<const char*>& keys) {
+  Json row;
+  for (const char* key : keys) row[key] = result[key];
+  return row;
+}
+
 Json rows_of(const std::vector<Json>& results, const std::vector<const char*>& keys) {
   Json rows = Json::array();
-  for (const Json& result : results) {
-    Json& row = rows.emplace_back();
-    for (const char* key : keys) row[key] = result[key];
-  }
+  for (const Json& result : results) rows.push_back(row_of(result, keys));
   return rows;
 }
 
-/// A cycle of the moment, step by step, computed beside exact.
+/// A cycle of the moment, step by step, computed and exact.
 Json cycle(const Json& result) {
   Json rows = Json::array();
-  for (const Json& step : result["steps"]) {
-    rows.push_back({{"moment_ratio", step["moment_ratio"]},
-                    {"twist", step["twist"]},
-                    {"exact", step["exact"]["twist"]},
-                    {"dissipated", step["dissipated"]}});
+  for (const Json& step : result.at("steps")) {
+    Json& row = rows.emplace_back(row_of(step, {"moment_ratio", "twist", "dissipated"}));
+    row.emplace("exact", number_at(step, "exact.twist"));
   }
-  return {{"cells", result["cells"]}, {"rows", std::move(rows)}};
-}
-
-/// The rows of one method.
-Json by_method(const Json& rows, const std::string& method) {
-  Json found = Json::array();
-  for (const Json& row : rows) {
-    if (row["method"] == method) found.push_back(row);
-  }
-  return found;
+  return {{"cells", result.at("cells")}, {"rows", std::move(rows)}};
 }
 
 /// In the order of their names.
@@ -195,15 +191,15 @@ std::vector<fs::path> settings_files(const fs::path& folder) {
   return files;
 }
 
-/// The published numbers beside ours; those of single solves, or also those that studies extrapolate.
-Json literature(const fs::path& folder, bool studies, const ProcessPool& pool) {
+/// The published numbers. studies: also the gates whose number is extrapolated by a study.
+std::vector<Judgement> literature(const fs::path& folder, bool studies, const ProcessPool& pool) {
   std::vector<Gate> gates;
   for (const fs::path& file : settings_files(folder)) {
     std::ranges::copy_if(read_gates(file), std::back_inserter(gates), [&](const Gate& gate) {
       return studies || !std::holds_alternative<StudySource>(gate.source);
     });
   }
-  return gates_json(run_gates(gates, pool));
+  return run_gates(gates, pool);
 }
 
 /// The hard cases, or an even part of them, by each method.
@@ -222,34 +218,54 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
                      pool));
 }
 
-/// A field of check/fields/, at 0.9 of the limit moment.
-struct KnownField {
+/// A field of check/fields/, at 0.9 of the limit moment. twist: rad, as the program reports it.
+struct FieldFile {
   const char* program;
   const char* file;
-  double twist;  ///< rad, that the program reported
+  double twist;
   const char* expected;
 };
 
-constexpr KnownField kFields[] = {{"CONTACT", "contact-64-0.9.csv", 2.361048651456917e-3, "good"},
-                                  {"CGContact", "cgcontact-64-0.9.csv", 2.21775472e-3, "bad"}};
+constexpr FieldFile kFields[] = {{"CONTACT", "contact-64-0.9.csv", 2.361048651456917e-3, "good"},
+                                 {"CGContact", "cgcontact-64-0.9.csv", 2.21775472e-3, "bad"}};
 
-/// What `check` says of fields that other programs computed for the paper's sphere and whose worth is known:
-/// a row for each, with its program, the verdict and the one that is expected. `inputs` has the scenes
-/// (scenes/) and the fields (check/fields/).
-Json judge_peers(const std::filesystem::path& inputs) {
+/// The verdicts of `check` on fields that other programs computed for the paper's sphere.
+std::vector<KnownField> judge_peers(const fs::path& inputs) {
   const solver::Scene scene = solver::read_scene(inputs / "scenes" / "paper.toml", {"load.moment_ratio=0.9"});
-  Json rows = Json::array();
-  for (const KnownField& field : kFields) {
-    const Json result =
-        to_json(check_field(scene, inputs / "check" / "fields" / field.file, {.twist = field.twist}));
-    Json& row = rows.emplace_back(
-        Json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}});
-    for (const char* key : {"verdict", "why", "cells", "twist_error", "moment_error", "stick_radius_error",
-                            "traction_error", "certificate", "slip_direction", "judged"}) {
-      row[key] = result[key];
-    }
+  std::vector<KnownField> rows;
+  for (const auto& [program, file, twist, expected] : kFields) {
+    const Json result = to_json(check_field(scene, inputs / "check" / "fields" / file, {.twist = twist}));
+    rows.push_back({.program = program,
+                    .file = file,
+                    .expected = expected,
+                    .verdict = result.value("verdict", ""),
+                    .check = row_of(result, {"verdict", "why", "cells", "twist_error", "moment_error",
+                                             "stick_radius_error", "traction_error", "certificate",
+                                             "slip_direction", "judged"})});
   }
   return rows;
+}
+
+/// The paper's sphere under other laws of friction; on the finest mesh also the tractions along a radius.
+Json beyond_rows(const std::map<std::string, std::vector<Json>>& results) {
+  Json rows = Json::array();
+  for (const auto& [name, overrides] : beyond_the_paper()) {
+    const std::vector<Json>& by_mesh = results.at(name);
+    rows.push_back(
+        {{"name", name},
+         {"rows", rows_of(by_mesh, {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
+                                    "traction_error", "operator_applications", "certificate"})},
+         {"profile", by_mesh.back().at("profile")}});
+  }
+  return rows;
+}
+
+/// The results of a method.
+std::vector<Json> by_method(const std::vector<Json>& results, const std::string& method) {
+  std::vector<Json> found;
+  std::ranges::copy_if(results, std::back_inserter(found),
+                       [&](const Json& result) { return result.value("method", "") == method; });
+  return found;
 }
 
 }  // namespace
@@ -279,39 +295,35 @@ ValidationSize quick_validation() {
           .gates = false};
 }
 
-Json validate(const Validation& asked, const fs::path& folder, const ProcessPool& pool) {
-  const auto& [inputs, size] = asked;
+PaperValidation validate(const Validation& request, const fs::path& folder, const ProcessPool& pool) {
+  const auto& [inputs, size] = request;
   const fs::path scenes = inputs / "scenes";
   const fs::path scene_file = scenes / "paper.toml";
   const Oracle exact = *find_oracle(solver::read_scene(scene_file)).oracle;
   const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
+  Json profiles = Json::array();
+  for (std::size_t i = 0; i < std::size(kProfileRatios); ++i)
+    profiles.push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
+  const std::vector<Json>& ellipses = results.at("ellipse");
 
-  Json paper;
-  paper["contact"] = {{"radius", exact.contact_radius}, {"peak_pressure", exact.peak_pressure}};
-  paper["loading_cells"] = size.loading_cells;
-  paper.update(exact_curves());
-  paper["profiles"] = Json::array();
-  for (std::size_t i = 0; i < std::size(kProfileRatios); ++i) {
-    paper["profiles"].push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
-  }
-  for (const char* section : {"loading", "mesh", "methods"}) paper[section] = results.at(section);
-  paper["ellipse"] = rows_of(  // that need no exact answer
-      results.at("ellipse"), {"method", "moment_ratio", "cells", "certificate", "slip_direction",
-                              "operator_applications", "iterations", "seconds", "twist"});
-  paper["errata"] = errata(results.at("errata").front(), by_method(paper["ellipse"], "paper"));
-  paper["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
-  paper["cycle"] = cycle(results.at("cycle").front());
-  for (const auto& [name, overrides] : beyond_the_paper()) {
-    const std::vector<Json>& by_mesh = results.at(name);  // on the finest one tractions along the radius too
-    paper["beyond"].push_back(
-        {{"name", name},
-         {"rows", rows_of(by_mesh, {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
-                                    "traction_error", "operator_applications", "certificate"})},
-         {"profile", by_mesh.back()["profile"]}});
-  }
-  paper["peers"] = judge_peers(inputs);
-  paper["literature"] = literature(inputs / "literature", size.gates, pool);
-  if (size.gates) paper["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
+  PaperValidation paper;
+  paper.figures = exact_curves();
+  paper.figures.update(
+      Json{{"contact", {{"radius", exact.contact_radius}, {"peak_pressure", exact.peak_pressure}}},
+           {"loading_cells", size.loading_cells},
+           {"profiles", std::move(profiles)},
+           {"loading", results.at("loading")},
+           {"mesh", results.at("mesh")},
+           {"methods", results.at("methods")},
+           {"ellipse", rows_of(ellipses, {"method", "moment_ratio", "cells", "certificate", "slip_direction",
+                                          "operator_applications", "iterations", "seconds", "twist"})},
+           {"errata", errata(results.at("errata").front(), by_method(ellipses, "paper"))},
+           {"cycle", cycle(results.at("cycle").front())},
+           {"beyond", beyond_rows(results)}});
+  paper.hard = hard_results(inputs / "hard", size.hard_step, pool);
+  paper.peers = judge_peers(inputs);
+  paper.literature = literature(inputs / "literature", size.gates, pool);
+  if (size.gates) paper.gates = run_gates(read_gates(inputs / "gates" / "quick.toml"), pool);
   return paper;
 }
 

@@ -1,135 +1,121 @@
 #include "convergence/studies/study.hpp"
 
-#include <numeric>
+#include <fmt/core.h>
 
-#include "convergence/results/provenance.hpp"
-#include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/run_batch.hpp"
-#include "convergence/studies/budget.hpp"
-#include "convergence/studies/study_plan.hpp"
+#include <algorithm>
+#include <functional>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-/// Times that a study tightens a tolerance by itself, from 1e-8 to 1e-12.
-constexpr int kMaxTightenings = 2;
+using solver::Index;
+using solver::SceneReader;
 
-/// Adds runs, and counts those that fail.
-class CountedRuns {
- public:
-  CountedRuns(RunBatch& batch, FailedRuns& failed) : batch_(batch), failed_(failed) {}
-  void add(const RunSpec& run, RunBatch::Take take) {
-    batch_.add(run, [&failed = failed_, name = run_text(run), take = std::move(take)](const Json& result) {
-      failed.add(name, result);
-      take(result);
-    });
+/// Cells along the longer side: with fewer a contact has no inside; with more one field takes gigabytes.
+constexpr double kMinStudyCells = 8.0;
+constexpr double kMaxStudyCells = 16384.0;
+/// More say nothing new about the spread.
+constexpr double kMaxShifts = 32.0;
+/// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
+/// billions.
+constexpr double kMaxSolves = 10'000.0;
+
+std::vector<Index> read_cells(SceneReader& reader) {
+  std::vector<Index> cells;
+  for (const double number : reader.numbers("cells")) {
+    cells.push_back(static_cast<Index>(number));
   }
-
- private:
-  RunBatch& batch_;
-  FailedRuns& failed_;
-};
-
-/// The runs of a series to its tolerance; `results` is filled when they are solved, and must stay until then.
-void add_runs(const Study& study, const Series& series, CountedRuns runs, std::vector<MeshResults>& results) {
-  results.assign(series.meshes.size(), {});
-  for (std::size_t i = 0; i < series.meshes.size(); ++i) {
-    const Mesh& mesh = series.meshes[i];
-    MeshResults& at = results[i];
-    for (const GridChoice& grid : mesh.grids) {
-      runs.add(make_run(study, grid, series.tolerance),
-               [&at](const Json& result) { at.grids.push_back(result); });
-    }
-    const BudgetRuns parts =
-        budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
-    runs.add(parts.tightened, [&at](const Json& result) { at.tightened = result; });
-    if (!mesh.rounded) continue;
-    for (const RunSpec& run : parts.rounded) {
-      runs.add(run, [&at](const Json& result) { at.rounded.push_back(result); });
-    }
-  }
+  std::sort(cells.begin(), cells.end());
+  const auto twice = std::adjacent_find(cells.begin(), cells.end());
+  if (twice != cells.end()) reader.fail("cells", fmt::format("{} twice", *twice), "each mesh once");
+  return cells;
 }
 
-/// Solves the series, again and to tighter tolerances where the iteration shows.
-std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vector<Series>& all,
-                                                   const ProcessPool& pool, FailedRuns& failed) {
-  std::vector<std::vector<MeshResults>> results(all.size());
-  std::vector<std::size_t> open(all.size());
-  std::iota(open.begin(), open.end(), std::size_t{0});
-  for (int pass = 0; !open.empty(); ++pass) {
-    RunBatch batch;
-    for (const std::size_t i : open) add_runs(study, all[i], {batch, failed}, results[i]);
-    batch.run(pool);
-    std::erase_if(open, [&](std::size_t i) {
-      return pass == kMaxTightenings || all[i].meshes.size() < 2 ||
-             !needs_tightening(study, all[i], results[i]);
-    });
-    for (const std::size_t i : open) {
-      all[i].tolerance *= kTightening;
-      ++all[i].tightenings;
+std::vector<Variation> read_variations(SceneReader& reader) {
+  std::vector<Variation> variations;
+  const std::size_t count = reader.count("vary");
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string at = fmt::format("vary[{}].", i);
+    variations.push_back({reader.text(at + "key"), reader.list(at + "values")});
+    if (variations.back().values.empty()) reader.fail(at + "values", "(missing)", "a list of values");
+    for (const char* own : {"grid.cells", "solver.tolerance"}) {
+      if (variations.back().key == own) {
+        reader.fail(at + "key", own, "a key of the scene other than those that cells and tolerances give");
+      }
     }
   }
-  return results;
+  return variations;
 }
 
-/// The tolerances that the study varies, and one tighter than all that stands for none.
-/// Results mesh by mesh, filled as those of add_runs().
-void add_tolerance_runs(const Study& study, const Series& series, CountedRuns runs,
-                        std::vector<std::vector<Json>>& by_mesh) {
-  by_mesh.assign(series.meshes.size(), {});
-  for (std::size_t i = 0; i < series.meshes.size(); ++i) {
-    const GridChoice& grid = series.meshes[i].grids.front();
-    const auto add = [&](double tolerance) {
-      runs.add(make_run(study, grid, tolerance),
-               [&at = by_mesh[i]](const Json& result) { at.push_back(result); });
-    };
-    for (const double tolerance : study.tolerances) add(tolerance);
-    add(kTightening * study.tolerances.back());
+std::vector<std::string> read_quantities(SceneReader& reader) {
+  std::vector<std::string> quantities;
+  const std::size_t count = reader.list("quantities").size();
+  for (std::size_t i = 0; i < count; ++i) quantities.push_back(reader.text(fmt::format("quantities[{}]", i)));
+  return quantities;
+}
+
+void require_finite(const std::filesystem::path& file, const Study& study) {
+  const auto at_least_one = [](std::size_t count) {
+    return static_cast<double>(std::max<std::size_t>(1, count));
+  };
+  double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
+  for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
+  if (solves > kMaxSolves) {
+    throw solver::InputError(file.string(),
+                             fmt::format("asks for {:g} solves; allowed: at most {:g}, cells times "
+                                         "shifts times tolerances times the values of each [[vary]]",
+                                         solves, kMaxSolves));
   }
 }
-
-bool varies_tolerance(const Study& study) { return study.tolerances.size() > 1; }
 
 }  // namespace
 
-std::vector<PreparedRun> study_runs(const Study& study, std::optional<double> memory_limit) {
-  RunBatch batch;
-  FailedRuns failed;
-  const std::vector<Series> all = make_series(study, memory_limit);
-  std::vector<std::vector<MeshResults>> results(all.size());
-  std::vector<std::vector<std::vector<Json>>> by_tolerance(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    add_runs(study, all[i], {batch, failed}, results[i]);
-    if (varies_tolerance(study)) add_tolerance_runs(study, all[i], {batch, failed}, by_tolerance[i]);
-  }
-  return batch.runs();
+const solver::SettingKeys& study_keys() {
+  using namespace solver;
+  static const SettingKeys keys{
+      {"name", KeyType::text, "", "the file's name", {}, "Heads what is printed."},
+      {"scene", KeyType::file, "", kRequired, kAny, "Scene file (TOML), relative to the study's folder."},
+      {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
+      {"cells", KeyType::numbers, "", "the scene's own grid", whole(kMinStudyCells, kMaxStudyCells),
+       "Cells along the longer side, a mesh each."},
+      {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), whole(1.0, kMaxShifts),
+       "Grids of each mesh, whose cells lie differently under the edges: mean and spread in place of noise."},
+      {"tolerances", KeyType::numbers, "", "the scene's own", kPositive,
+       "Tolerances to which each mesh is solved."},
+      {"vary", KeyType::tables, "", "none", kAny,
+       "Tables `[[vary]]`: every combination is a series of its own."},
+      {"vary.key", KeyType::text, "", kRequired, kAny,
+       "The key of the scene that varies; not grid.cells, not solver.tolerance."},
+      {"vary.values", KeyType::values, "", kRequired, kAny, "The values that it takes."},
+      {"quantities", KeyType::texts, "", "all that have an expected order", kAny,
+       "Paths into a result, as of a gate's quantity."}};
+  return keys;
 }
 
-Json run_study(const Study& study, const ProcessPool& pool) {
-  std::vector<Series> all = make_series(study, pool.memory_limit());
-  FailedRuns failed;
-  const auto results = solve_series(study, all, pool, failed);
-  Json json;
-  json["name"] = study.name;
-  json["scene"] = study.scene.string();
-  json["shifts"] = study.shifts;
-  json["series"] = Json::object();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    json["series"][all[i].name] = judge_series(study, all[i], results[i]);
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  SceneReader reader(file, {}, study_keys());
+  Study study;
+  study.source = file;
+  study.name = reader.text_or("name", file.stem().string());
+  study.scene = reader.path("scene");
+  study.overrides = reader.assignments("set");
+  study.overrides.insert(study.overrides.end(), overrides.begin(), overrides.end());
+  study.cells = read_cells(reader);
+  study.shifts = static_cast<int>(reader.number_or("shifts", study.shifts));
+  study.tolerances = reader.numbers("tolerances");
+  std::sort(study.tolerances.begin(), study.tolerances.end(), std::greater<>());
+  study.variations = read_variations(reader);
+  study.quantities = read_quantities(reader);
+  reader.reject_unknown();
+  if (study.cells.size() < 2 && study.tolerances.size() < 2 && study.variations.empty()) {
+    throw solver::InputError(file.string(),
+                             "nothing varies; allowed: several cells, several tolerances, or [[vary]]");
   }
-  if (varies_tolerance(study)) {
-    RunBatch batch;
-    std::vector<std::vector<std::vector<Json>>> by_mesh(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-      add_tolerance_runs(study, all[i], {batch, failed}, by_mesh[i]);
-    batch.run(pool);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      json["series"][all[i].name]["tolerances"] = tolerance_rows(study, all[i], by_mesh[i], results[i]);
-    }
-  }
-  json["failed_runs"] = failed.json();
-  json["provenance"] = provenance(1);
-  return json;
+  require_finite(file, study);
+  return study;
 }
 
 }  // namespace slipstick::convergence

@@ -1,13 +1,14 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "convergence/studies/study.hpp"
+#include "convergence/studies/study_run.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -19,14 +20,10 @@ struct StudyRequest {
   RunOptions runs{.output = "build/studies"};
 };
 
-bool all_converged(const Json& result) {
-  if (result["failed_runs"]["count"] != 0) return false;
-  for (const auto& [name, series] : result["series"].items()) {
-    for (const Json& row : series["rows"]) {
-      if (row["status"] != "converged") return false;
-    }
-  }
-  return true;
+bool all_converged(const StudyResult& result) {
+  return std::ranges::all_of(result.series, [](const SeriesResult& series) {
+    return std::ranges::all_of(series.rows, [](const StudyRow& row) { return row.status == "converged"; });
+  });
 }
 
 int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& pool, std::ostream& text,
@@ -45,14 +42,16 @@ int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostr
   require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
   const ProcessPool pool = request.runs.pool();
   if (shard) return run_study_shard(study, *shard, pool, text, result);
+  StudyResult found;
   {
     const Interrupts interrupts;
     if (!request.runs.merged.empty()) require_finished(study_runs(study, pool.memory_limit()), pool);
-    result = run_study(study, pool);
+    found = run_study(study, pool);
   }
-  text << study_text(result);
+  result = to_json(found);
+  text << study_text(found);
   if (!request.figure.empty()) draw_study(request.figure, result);
-  return all_converged(result) ? 0 : 1;
+  return failed_runs_text(result).empty() && all_converged(found) ? 0 : 1;
 }
 
 int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,

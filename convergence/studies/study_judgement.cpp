@@ -1,4 +1,4 @@
-#include "convergence/studies/study_plan.hpp"
+#include "convergence/studies/study_judgement.hpp"
 
 #include <fmt/core.h>
 #include <gsl/gsl_statistics_double.h>
@@ -17,7 +17,7 @@
 namespace slipstick::convergence {
 namespace {
 
-/// No order is fitted while the iteration error is a larger part of the discretisation error.
+/// The tolerance is reduced while the iteration error is a larger part of the discretisation error.
 constexpr double kIterationPart = 0.1;
 
 /// A quantity through the meshes of a series.
@@ -34,7 +34,7 @@ double mean_size(const Mesh& mesh) {
   return sum / static_cast<double>(mesh.grids.size());
 }
 
-/// Mean and standard deviation of the grids that converged; noise is not known yet.
+/// Mean and standard deviation of the grids that converged; the noise is set later.
 MeshSample sample_of(const Mesh& mesh, const std::vector<Json>& results, const std::string& quantity) {
   MeshSample sample{0.0, 0.0, 0.0, 0, NAN};
   double squares = 0.0;
@@ -52,7 +52,7 @@ MeshSample sample_of(const Mesh& mesh, const std::vector<Json>& results, const s
   return sample;
 }
 
-/// Rounding is measured on one mesh and taken to be the same part of the result on the others.
+/// Rounding is measured on one mesh and taken to have the same size on the others.
 double rounding_of(const std::vector<Budget>& budgets, const std::vector<Mesh>& meshes) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (meshes[i].rounded) return budgets[i].rounding;
@@ -76,7 +76,7 @@ Curve make_curve(const Series& series, const std::vector<MeshResults>& results, 
   return curve;
 }
 
-/// A result that converged, of the finest mesh that has one; where none did, one that there is, if any.
+/// A converged result of the finest mesh that has one; else any result; else a failure.
 const Json& sample_result(const std::vector<MeshResults>& results) {
   const Json* sample = &results.front().grids.front();
   for (auto at = results.rbegin(); at != results.rend(); ++at) {
@@ -88,23 +88,32 @@ const Json& sample_result(const std::vector<MeshResults>& results) {
   return *sample;
 }
 
-/// The quantities of a series: those asked for, or all errors that there are; values of what the exact answer
-/// does not say, or where there is none.
-std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, const Json& result) {
-  std::vector<std::pair<std::string, bool>> chosen;
-  const auto is_error = [](const std::string& path) { return path.find("_error") != std::string::npos; };
-  if (!study.quantities.empty()) {
-    for (const std::string& path : study.quantities) {
-      if (!is_failed(result) && find_quantity(result, path).value == nullptr) {
-        throw solver::InputError(study.source.string(), "quantities", path,
-                                 "paths into a result, as slipstick solve --json writes it");
-      }
-      chosen.emplace_back(path, is_error(path));
+/// A quantity of a series. exact: an error against an exact answer, not a value.
+struct Chosen {
+  std::string path;
+  bool exact;
+};
+
+/// The quantities of the study file.
+std::vector<Chosen> named_quantities(const Study& study, const Json& result) {
+  std::vector<Chosen> chosen;
+  for (const std::string& path : study.quantities) {
+    if (!is_failed(result) && find_quantity(result, path).value == nullptr) {
+      throw solver::InputError(study.source.string(), "quantities", path,
+                               "paths into a result, as slipstick solve --json writes it");
     }
-    return chosen;
+    chosen.push_back({path, path.find("_error") != std::string::npos});
   }
+  return chosen;
+}
+
+/// The quantities of the study file; without them all errors of the result, and the values for which there is
+/// no exact answer.
+std::vector<Chosen> choose_quantities(const Study& study, const Json& result) {
+  if (!study.quantities.empty()) return named_quantities(study, result);
+  std::vector<Chosen> chosen;
   const auto choose = [&](const std::string& path, bool exact) {
-    if (std::isfinite(number_at(result, path))) chosen.emplace_back(path, exact);
+    if (std::isfinite(number_at(result, path))) chosen.push_back({path, exact});
   };
   const auto exact = result.find("exact");
   for (const std::string& path : value_quantities()) {
@@ -112,10 +121,9 @@ std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, 
   }
   if (exact == result.end()) return chosen;
   for (const ErrorQuantity& error : error_quantities()) choose(error.path, true);
-  // Beside the radius the ratio says nothing new; of some contacts it is all that is known.
-  if (std::isfinite(number_at(result, "stick_radius_error"))) {
-    std::erase(chosen, std::pair<std::string, bool>("stick_ratio_error", true));
-  }
+  // The ratio follows from the radius, unless the contact has an exact answer for the ratio only.
+  if (std::isfinite(number_at(result, "stick_radius_error")))
+    std::erase_if(chosen, [](const Chosen& each) { return each.path == "stick_ratio_error"; });
   return chosen;
 }
 
@@ -130,7 +138,7 @@ bool is_aligned(const solver::Scene& scene, const std::vector<MeshResults>& resu
   });
 }
 
-/// The limit of a curve of values; the curve becomes that of its errors relative to it.
+/// The limit of a curve of values. The curve becomes value / limit - 1.
 Limit find_limit(Curve& curve, const ExpectedOrder& expected, bool aligned) {
   const Limit limit = aligned && std::isfinite(expected.value)
                           ? expansion_limit(curve.samples, aligned_edge_powers(), expected.value)
@@ -147,8 +155,7 @@ Limit find_limit(Curve& curve, const ExpectedOrder& expected, bool aligned) {
   return limit;
 }
 
-/// Whether stopping earlier than necessary shows in an error. What is at its floor, or is imposed, is not
-/// looked at.
+/// Whether the iteration error shows in an error that is above rounding and reference.
 bool iteration_shows(const Curve& curve, const Series& series) {
   for (std::size_t i = 0; i < curve.budgets.size(); ++i) {
     const Budget& budget = curve.budgets[i];
@@ -161,26 +168,12 @@ bool iteration_shows(const Curve& curve, const Series& series) {
   return false;
 }
 
-Json order_json(const Order& order, const ExpectedOrder& expected) {
-  Json json;
-  set_number(json, "value", order.value, order.why);
-  set_number(json, "low", order.low, order.why);
-  set_number(json, "high", order.high, order.why);
-  set_number(json, "constant", order.constant, order.why);
-  json["verdict"] = to_string(order.verdict);
-  json["why"] = order.why;
-  set_number(json, "expected", expected.value, expected.why);
-  json["expected_why"] = expected.why;
-  json["sizes"] = order.sizes;
-  return json;
-}
-
 const std::string& first_of(const std::string& one, const std::string& other) {
   return one.empty() ? other : one;
 }
 
-/// Why a part of a mesh's budget is missing: what the first of the runs that it rests on says; empty: none
-/// is.
+/// Why a part of a mesh's budget is missing: the reason of the first run without a result; empty: nothing is
+/// missing.
 std::string missing_part(const Series& series, const std::vector<MeshResults>& results, std::size_t mesh,
                          const std::string& quantity) {
   std::string missing = first_of(why_missing(results[mesh].grids.front(), quantity),
@@ -194,46 +187,34 @@ std::string missing_part(const Series& series, const std::vector<MeshResults>& r
   return missing;
 }
 
-/// One line of the budget. The trend is what the fitted order says for the mesh, the staircase what is left
-/// of the discretisation: how this grid happens to lie.
-Json budget_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
-                 const std::string& missing) {
+BudgetLine budget_line(const Curve& curve, const Order& order, std::size_t mesh, double h,
+                       const std::string& missing) {
   const Budget& budget = curve.budgets[mesh];
-  Json json;
-  json["quantity"] = curve.quantity;
-  json["cells"] = grids.grids.front().cells;
-  json["h"] = grids.grids.front().size;
   const std::string& none = first_of(missing, order.why);
-  set_number(json, "observed", budget.observed, none);
-  set_number(json, "discretisation", budget.discretisation, none);
-  set_number(json, "iteration", budget.iteration, none);
-  set_number(json, "rounding", budget.rounding, none);
-  set_number(json, "reference", budget.reference, "the reference does not say");
-  const double trend = order.constant * std::pow(grids.grids.front().size, order.value);
   const std::string unfitted = "no order was fitted";
-  set_number(json, "trend", trend, unfitted);
-  set_number(json, "staircase", budget.discretisation - trend, first_of(missing, unfitted));
-  return json;
+  const double trend = order.constant * std::pow(h, order.value);
+  return {.h = h,
+          .observed = number_or(budget.observed, none),
+          .discretisation = number_or(budget.discretisation, none),
+          .iteration = number_or(budget.iteration, none),
+          .rounding = number_or(budget.rounding, none),
+          .reference = number_or(budget.reference, "the reference does not say"),
+          .trend = number_or(trend, unfitted),
+          .staircase = number_or(budget.discretisation - trend, first_of(missing, unfitted))};
 }
 
-/// A quantity on a mesh: what is there of its grids.
-Json mesh_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
-               const std::string& missing) {
-  const MeshSample& sample = curve.samples[mesh];
+MeshQuantity mesh_quantity(const MeshSample& sample, const Order& order, std::size_t grids,
+                           const std::string& missing) {
   const std::string none = sample.grids == 0 ? "no grid of this mesh converged" : order.why;
-  Json json;
-  json["grids"] = sample.grids;
-  set_number(json, "mean", sample.value, none);
-  if (sample.grids == 1 && grids.grids.size() > 1) {
-    set_missing(json, "spread", "one grid of this mesh converged, and has no spread");
-  } else {
-    set_number(json, "spread", sample.spread, none);
-  }
-  set_number(json, "noise", sample.noise, first_of(missing, none));
-  return json;
+  const bool one_left = sample.grids == 1 && grids > 1;
+  return {.grids = sample.grids,
+          .mean = number_or(sample.value, none),
+          .spread = one_left ? Number{.why_missing = "one grid of this mesh converged, and has no spread"}
+                             : number_or(sample.spread, none),
+          .noise = number_or(sample.noise, first_of(missing, none))};
 }
 
-/// Those that a series is judged by.
+/// The runs by which a series is judged.
 FailedRuns failed_runs(const std::vector<MeshResults>& results) {
   FailedRuns failed;
   int runs = 0;
@@ -246,23 +227,21 @@ FailedRuns failed_runs(const std::vector<MeshResults>& results) {
   return failed;
 }
 
-Json row_json(const Json& result, const GridChoice& grid, double tolerance, std::size_t shift,
-              const std::vector<std::string>& quantities) {
-  Json row;
-  row["cells"] = grid.cells;
-  row["h"] = grid.size;
-  row["shift"] = shift;
-  row["requested"] = tolerance;
-  row["status"] = result["status"];
-  if (result.contains("message")) row["message"] = result["message"];
+Number number_of(const Json& result, const std::string& path) {
+  return number_or(number_at(result, path), why_missing(result, path));
+}
+
+StudyRow make_row(const Json& result, const GridChoice& grid, double tolerance, std::size_t shift,
+                  const std::vector<Chosen>& quantities) {
+  StudyRow row{.cells = grid.cells, .h = grid.size, .shift = shift, .requested = tolerance};
+  row.status = result.value("status", "");
+  if (const auto message = result.find("message"); message != result.end()) row.message = *message;
   for (const char* path : {"certificate.gap", "certificate.friction_bound", "slip_direction.mean", "change",
                            "operator_applications", "iterations"}) {
-    set_number(row, path, number_at(result, path), why_missing(result, path));
+    row.numbers.emplace_back(path, number_of(result, path));
   }
-  for (const std::string& path : quantities) {
-    set_number(row, path, number_at(result, path), why_missing(result, path));
-  }
-  set_number(row, "seconds", seconds_of(result), why_missing(result, "seconds.total"));
+  for (const auto& [path, exact] : quantities) row.numbers.emplace_back(path, number_of(result, path));
+  row.seconds = number_or(seconds_of(result), why_missing(result, "seconds.total"));
   return row;
 }
 
@@ -275,64 +254,58 @@ double median_seconds(const std::vector<Json>& grids) {
   return seconds.empty() ? kNaN : gsl_stats_median(seconds.data(), 1, seconds.size());
 }
 
+QuantityResult judge_quantity(const Chosen& chosen, const solver::Scene& scene, const Series& series,
+                              const std::vector<MeshResults>& results, const std::string& failures) {
+  QuantityResult judged{.path = chosen.path, .exact = chosen.exact};
+  Curve curve = make_curve(series, results, chosen.path, chosen.exact);
+  judged.expected = expected_order(chosen.path, scene);
+  if (chosen.exact) {
+    judged.order = fit_order(curve.samples, judged.expected.value);
+  } else {
+    const Limit limit = find_limit(curve, judged.expected, is_aligned(scene, results));
+    judged.order = limit.order;
+    judged.order.constant /= limit.value;  // of the curve, which find_limit() has made relative
+    judged.extrapolated = {number_or(limit.value, limit.order.why),
+                           number_or(limit.uncertainty, limit.order.why), limit.method};
+  }
+  if (!failures.empty()) judged.order.why += "; " + failures;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::vector<GridChoice>& grids = series.meshes[i].grids;
+    const std::string missing = missing_part(series, results, i, chosen.path);
+    judged.meshes.push_back(mesh_quantity(curve.samples[i], judged.order, grids.size(), missing));
+    judged.budget.push_back(budget_line(curve, judged.order, i, grids.front().size, missing));
+  }
+  return judged;
+}
+
 }  // namespace
 
-Json judge_series(const Study& study, const Series& series, const std::vector<MeshResults>& results) {
+SeriesResult judge_series(const Study& study, const Series& series, const std::vector<MeshResults>& results) {
   const Json& sample = sample_result(results);
   const solver::Scene scene = solver::read_scene(study.scene, series.overrides);
-  const auto quantities = choose_quantities(study, sample);
-  std::vector<std::string> paths;
-  for (const auto& [path, exact] : quantities) paths.push_back(path);
-  Json json;
-  json["set"] = series.set;
-  json["tolerance"] = series.tolerance;
-  json["tightened"] = series.tightenings;
-  json["basis"] = std::ranges::any_of(quantities, [](const auto& chosen) { return chosen.second; })
-                      ? "exact"
-                      : "extrapolated";
-  set_number(json, "reference_uncertainty", number_at(sample, "exact.relative_uncertainty"),
-             is_failed(sample) ? sample.value("message", "") : "there is no exact answer");
-  json["failed_runs"] = failed_runs(results).json();
-  const std::string failures = failed_runs_text(json);
-  json["rows"] = Json::array();
-  json["meshes"] = Json::array();
+  const std::vector<Chosen> quantities = choose_quantities(study, sample);
+  SeriesResult judged{.name = series.name,
+                      .set = series.set,
+                      .tolerance = series.tolerance,
+                      .tightened = series.tightenings,
+                      .reference_uncertainty = number_or(
+                          number_at(sample, "exact.relative_uncertainty"),
+                          is_failed(sample) ? sample.value("message", "") : "there is no exact answer"),
+                      .failed_runs = failed_runs(results)};
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Mesh& mesh = series.meshes[i];
-    for (std::size_t k = 0; k < results[i].grids.size(); ++k) {
-      json["rows"].push_back(row_json(results[i].grids[k], mesh.grids[k], series.tolerance, k, paths));
-    }
-    Json& row = json["meshes"].emplace_back(
-        Json{{"cells", mesh.grids.front().cells}, {"h", mean_size(mesh)}, {"grids", mesh.grids.size()}});
-    set_number(row, "seconds", median_seconds(results[i].grids), "no grid of it was solved");
+    for (std::size_t k = 0; k < results[i].grids.size(); ++k)
+      judged.rows.push_back(make_row(results[i].grids[k], mesh.grids[k], series.tolerance, k, quantities));
+    judged.meshes.push_back(
+        {.cells = mesh.grids.front().cells,
+         .h = mean_size(mesh),
+         .grids = mesh.grids.size(),
+         .seconds = number_or(median_seconds(results[i].grids), "no grid of it was solved")});
   }
-  json["order"] = Json::object();
-  json["extrapolated"] = Json::object();
-  json["budget"] = Json::array();
-  for (const auto& [path, exact] : quantities) {
-    Curve curve = make_curve(series, results, path, exact);
-    const ExpectedOrder expected = expected_order(path, scene);
-    Order order;
-    if (exact) {
-      order = fit_order(curve.samples, expected.value);
-    } else {
-      const Limit limit = find_limit(curve, expected, is_aligned(scene, results));
-      order = limit.order;
-      order.constant /= limit.value;  // as the curve is now
-      Json& found = json["extrapolated"][path];
-      set_number(found, "value", limit.value, order.why);
-      set_number(found, "uncertainty", limit.uncertainty, order.why);
-      found["method"] = limit.method;
-    }
-    if (!failures.empty()) order.why += "; " + failures;
-    json["order"][path] = order_json(order, expected);
-    json["order"][path]["basis"] = exact ? "exact" : "extrapolated";
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const std::string missing = missing_part(series, results, i, path);
-      json["meshes"][i][path] = mesh_json(curve, order, i, series.meshes[i], missing);
-      json["budget"].push_back(budget_json(curve, order, i, series.meshes[i], missing));
-    }
-  }
-  return json;
+  const std::string failures = failed_runs_text(Json{{"failed_runs", judged.failed_runs.json()}});
+  for (const Chosen& chosen : quantities)
+    judged.quantities.push_back(judge_quantity(chosen, scene, series, results, failures));
+  return judged;
 }
 
 bool needs_tightening(const Study& study, const Series& series, const std::vector<MeshResults>& results) {
@@ -347,24 +320,24 @@ bool needs_tightening(const Study& study, const Series& series, const std::vecto
   return false;
 }
 
-Json tolerance_rows(const Study& study, const Series& series, const std::vector<std::vector<Json>>& by_mesh,
-                    const std::vector<MeshResults>& results) {
-  const auto chosen = choose_quantities(study, sample_result(results));
-  std::vector<std::string> quantities;
-  for (const auto& [path, exact] : chosen) quantities.push_back(path);
-  Json rows = Json::array();
+std::vector<StudyRow> tolerance_rows(const Study& study, const Series& series,
+                                     const std::vector<std::vector<Json>>& by_mesh,
+                                     const std::vector<MeshResults>& results) {
+  const std::vector<Chosen> quantities = choose_quantities(study, sample_result(results));
+  std::vector<StudyRow> rows;
   for (std::size_t i = 0; i < by_mesh.size(); ++i) {
-    const std::vector<Json>& at = by_mesh[i];
+    const Json& tightest_run = by_mesh[i].back();
     for (std::size_t k = 0; k < study.tolerances.size(); ++k) {
-      Json row = row_json(at[k], series.meshes[i].grids.front(), study.tolerances[k], 0, quantities);
-      for (const auto& [path, exact] : chosen) {
-        const double tightest = number_at(at.back(), path);
+      const Json& result = by_mesh[i][k];
+      StudyRow& row = rows.emplace_back(
+          make_row(result, series.meshes[i].grids.front(), study.tolerances[k], 0, quantities));
+      for (const auto& [path, exact] : quantities) {
+        const double tightest = number_at(tightest_run, path);
         const double scale = exact ? 1.0 : std::abs(tightest);
-        const std::string missing = first_of(why_missing(at[k], path), why_missing(at.back(), path));
-        set_number(row["iteration"], path, (number_at(at[k], path) - tightest) / scale,
-                   first_of(missing, "the tightest run gives zero"));
+        const std::string missing = first_of(why_missing(result, path), why_missing(tightest_run, path));
+        row.iteration.emplace_back(path, number_or((number_at(result, path) - tightest) / scale,
+                                                   first_of(missing, "the tightest run gives zero")));
       }
-      rows.push_back(std::move(row));
     }
   }
   return rows;

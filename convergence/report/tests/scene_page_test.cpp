@@ -1,4 +1,4 @@
-// Pages of scenes: each shows what its scene has, and nothing else; the verdict follows from what is wanted.
+// Pages of scenes: their parts, their errors and their verdicts.
 
 #include "convergence/report/scene_page.hpp"
 
@@ -29,7 +29,7 @@ TEST(WantedError, IsAQuantityAndANumberBelowOne) {
   for (const char* word :
        {"twist", "twist=", "twist=0", "twist=1", "twist=-1e-3", "twist=nan", "twist=1e-3x"}) {
     EXPECT_THAT(solver::complaint([&] { read_wanted_error(word); }),
-                AllOf(HasSubstr("--want"), HasSubstr(word), HasSubstr("twist=1e-3")));
+                AllOf(HasSubstr("--want"), HasSubstr(word)));
   }
 }
 
@@ -43,7 +43,7 @@ PageSize tiny() {
   return size;
 }
 
-/// Numbers that answer to the tangential load.
+/// Numbers that depend on the tangential load.
 const std::set<std::string> kJudged{"twist_angle", "displacement", "stick_radius"};
 
 std::vector<std::string> scene_names() {
@@ -60,7 +60,7 @@ class ScenePage : public ScratchFolder, public testing::WithParamInterface<std::
   Json page(const fs::path& scene, const std::vector<WantedError>& wanted = {},
             const std::vector<std::string>& uncertain = {}) const {
     const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
-    return scene_page({{.scene = scene}, tiny(), wanted, uncertain}, folder_, pool);
+    return to_json(scene_page({{.scene = scene}, tiny(), wanted, uncertain}, folder_, pool));
   }
   static fs::path file(const std::string& name) { return fs::path(SLIPSTICK_SCENES) / (name + ".toml"); }
 };
@@ -70,11 +70,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ScenePage, testing::ValuesIn(scene_names()), []
   return name;
 });
 
-/// The most that so few cells may leave of a number that has an exact answer, relative: (h/a)^2, of cell size
-/// and contact radius, for what answers to the contact as a whole; h/a where the pressure is singular at the
-/// edge, which the cells place to h; h over the stick radius, whose front the cells place to h; and where the
-/// contact grows in load steps, also the part by which its radius grows in one. A slip ring narrower than a
-/// cell is not resolved: all of its width may be missing.
+/// Bound of the relative error on few cells, with cell size h and contact radius a: (h/a)^2 for numbers of
+/// the whole contact; h/a for a pressure that is singular at the edge, which cells place to h; h over the
+/// stick radius for the stick radius; plus the relative growth of the radius in one load step. The whole
+/// width of a slip ring may be missing if it is narrower than a cell.
 double mesh_bound(const std::string& scene, const std::string& key, const Json& answer) {
   const double radius = std::sqrt(answer["contact_cells"].get<double>() / std::numbers::pi);  // in cells
   const Json& exact = answer["exact"];
@@ -85,7 +84,7 @@ double mesh_bound(const std::string& scene, const std::string& key, const Json& 
   return scene == "flat_punch" ? 1.0 / radius : 1.0 / (radius * radius);
 }
 
-TEST_P(ScenePage, ShowsWhatItsSceneHas) {
+TEST_P(ScenePage, HasThePartsOfItsScene) {
   const solver::Scene scene = solver::read_scene(file(GetParam()));
   const bool exact = find_oracle(scene).oracle.has_value();
   const Json page = this->page(file(GetParam()));
@@ -114,8 +113,7 @@ TEST_P(ScenePage, ShowsWhatItsSceneHas) {
   EXPECT_EQ(page["headline"]["counts"]["checks"]["Certificate"], "holds");
 }
 
-/// Which scenes have an exact answer to more than the normal contact is known from theory, not found by a
-/// run.
+/// Scenes with an exact answer to more than the normal contact, by theory.
 TEST(Scenes, HaveTheExactAnswersThatTheoryHas) {
   const std::set<std::string> exact{
       "paper",        "paper-0.1",     "paper-0.5",      "paper-0.99",       "off_centre",
@@ -155,33 +153,29 @@ TEST_F(ScenePage, CountsTheLengthOfSteps) {
 }
 
 /// The page of a long history takes coarser meshes, and says so.
-TEST_F(ScenePage, SaysWhatALongHistoryLeavesOut) {
+TEST_F(ScenePage, NamesTheMeshesThatALongHistoryOmits) {
   PageSize size = tiny();
   size.long_history = 1;
   const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
-  const Json made = scene_page({{.scene = file("fretting_torsion")}, size}, folder_, pool);
+  const Json made = to_json(scene_page({{.scene = file("fretting_torsion")}, size}, folder_, pool));
   EXPECT_EQ(made["answer"]["cells"], Json({32, 32})) << "no page has fewer";
   EXPECT_EQ(made["scene"]["summary"].back()[0], "Left out");
 }
 
 /// All tractions and motions of a sphere in torsion are proportional to the friction; the limit is.
-TEST_F(ScenePage, SaysWhatInputsMakeOfNumbers) {
+TEST_F(ScenePage, HasTheUncertaintyByInputs) {
   const Json outputs = page(file("paper"), {}, {"contact.friction=10%"})["uncertainty"]["outputs"];
   for (const char* key : {"twist_angle", "moment_limit"}) {
     EXPECT_NEAR(outputs[key]["relative"].get<double>(), 0.1, 1e-6) << key;
   }
 }
 
-/// What the page calls the error is that of solve; and a bound on either side of it decides the verdict.
-TEST_F(ScenePage, JudgesByWhatIsWanted) {
+/// The page has the error of solve, and a bound on either side of it decides the verdict.
+TEST_F(ScenePage, JudgesByTheWantedError) {
   const Json plain = page(file("paper"));
   const double error = std::abs(plain["answer"]["twist_error"].get<double>());
   const auto verdict = [&](double wanted) {
     const Json judged = page(file("paper"), {{"twist_angle", wanted}});
-    const std::vector<JunitCase> cases = page_cases(judged);
-    const bool failed = std::ranges::any_of(
-        cases, [](const JunitCase& each) { return each.verdict == CaseVerdict::failure; });
-    EXPECT_EQ(judged["headline"]["verdict"] == "bad", failed);
     return judged["headline"]["counts"]["checks"]["Error of the twist"].get<std::string>();
   };
   EXPECT_EQ(verdict(1.01 * error), "holds");

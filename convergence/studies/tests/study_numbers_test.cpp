@@ -1,15 +1,15 @@
-// What a study says of results whose order, constant, limit, spread and noise are known, for they are made.
+// The numbers of a study of made results with known order, constant, limit, spread and noise.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "convergence/studies/study_plan.hpp"
+#include "convergence/studies/study_judgement.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-/// A study of one quantity on four meshes, each of so many grids.
+/// A study of one quantity on four meshes with `grids` grids each.
 struct MadeStudy {
   Study study;
   Series series;
@@ -50,7 +50,7 @@ struct MadeStudy {
     return result;
   }
 
-  /// What the grids of a mesh have, the first of them when its iteration goes on, and what rounding does.
+  /// The values of the grids of a mesh, of its first grid to a tighter tolerance, and the change by rounding.
   void set(std::size_t mesh, const std::vector<double>& grids, double tightened, double rounding,
            double reference = NAN) {
     MeshResults& at = results[mesh];
@@ -61,11 +61,11 @@ struct MadeStudy {
     at.rounded = {with(tightened + rounding, reference), with(tightened - 0.5 * rounding, reference)};
   }
 
-  Json judged() const { return judge_series(study, series, results); }
+  Json judged() const { return to_json(judge_series(study, series, results)); }
   bool is_tightened() const { return needs_tightening(study, series, results); }
 };
 
-/// within: a part of what is expected.
+/// within: a part of the expected number.
 void expect_part(const Json& found, double expected, double within) {
   ASSERT_TRUE(found.is_number()) << found;
   EXPECT_NEAR(found.get<double>(), expected, std::abs(within * expected));
@@ -77,7 +77,7 @@ constexpr double kMadeReference = 3e-9;
 constexpr double kMadeRounding = 5e-9;
 
 // Stopping takes a thousandth off each error.
-TEST(StudyNumbers, OfErrorsAreThoseThatTheyWereMadeFrom) {
+TEST(StudyNumbers, OfErrorsAreTheMadeOnes) {
   MadeStudy made("paper", kMadeError, 1);
   const auto error = [&](std::size_t mesh) { return kMadeConstant * made.of_first(mesh); };
   for (std::size_t i = 0; i < made.meshes(); ++i) {
@@ -104,7 +104,7 @@ TEST(StudyNumbers, OfErrorsAreThoseThatTheyWereMadeFrom) {
 
 // Values L (1 + A h^1.5) of a negative L: errors are relative to the limit, sizes and bounds to its size. The
 // uncertainty of the limit of a fit without residuals is 1.25 times the finest mesh's distance from it (Eca
-// and Hoekstra 2014), and what its noise leaves open.
+// and Hoekstra 2014), plus the noise.
 TEST(StudyNumbers, OfValuesAreRelativeToTheirLimit) {
   const std::string quantity = "moment_limit";
   const double limit = -0.03;
@@ -145,8 +145,7 @@ TEST(StudyNumbers, OfValuesAreRelativeToTheirLimit) {
   }
 }
 
-/// Whether a study goes on to a tighter tolerance, where stopping adds a part of one mesh's error, and
-/// rounding and reference leave a part of it open.
+/// Whether a study takes a tighter tolerance. stopping, rounding, reference: parts of one mesh's error.
 bool tightens(double stopping, double rounding, double reference) {
   MadeStudy made("paper", kMadeError, 1);
   for (std::size_t i = 0; i < made.meshes(); ++i) {
@@ -157,15 +156,15 @@ bool tightens(double stopping, double rounding, double reference) {
   return made.is_tightened();
 }
 
-TEST(StudyNumbers, AskForATighterToleranceFromATenthOfTheErrorOn) {
+TEST(StudyNumbers, NeedATighterToleranceFromATenthOfTheErrorOn) {
   EXPECT_FALSE(tightens(0.095, 1e-3, 1e-3));
   EXPECT_TRUE(tightens(0.105, 1e-3, 1e-3));
   EXPECT_FALSE(tightens(-0.095, 1e-3, 1e-3));
   EXPECT_TRUE(tightens(-0.105, 1e-3, 1e-3));
 }
 
-// What rounding and the reference leave open no tolerance removes.
-TEST(StudyNumbers, AskForNoTighterToleranceBelowTheFloor) {
+// No tolerance removes the errors by rounding and by the reference.
+TEST(StudyNumbers, NeedNoTighterToleranceBelowTheFloor) {
   EXPECT_TRUE(tightens(0.2, 0.04, 0.15));
   EXPECT_FALSE(tightens(0.2, 0.06, 0.15));
   EXPECT_FALSE(tightens(0.2, 0.15, 0.06));

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convergence/gates/gate.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "convergence/studies/study_result.hpp"
+
+/// The page of a scene as a value: docs/schema/report.schema.json has the same names.
+namespace slipstick::convergence {
+
+/// A scene in words. text: its file; summary: labels and values.
+struct SceneDescription {
+  std::string name = {};
+  std::string text = {};
+  std::vector<std::pair<std::string, std::string>> summary = {};
+  /// The gap of the undeformed bodies in m, NaN where they cannot touch: along both axes of the grid through
+  /// its centre, and on a coarse map.
+  struct Gap {
+    std::vector<double> x1 = {}, along_1 = {}, x2 = {}, along_2 = {};
+    std::vector<std::vector<double>> map = {};
+  } gap = {};
+};
+
+/// A number of the answer with its relative error. error = mesh + path, by the mesh and by the length of the
+/// load steps; for a number with an exact answer only the sum is known, and it is signed.
+struct PageNumber {
+  std::string key = {};
+  std::string words = {};
+  std::string unit = {};
+  double value = 0.0;
+  std::string basis = {};  ///< how the error is known, or why it is not
+  Number reference = {};   ///< exact or extrapolated value
+  Number error = {};
+  Number mesh = {};
+  Number path = {};
+  Number uncertainty = {};  ///< of the reference, relative
+};
+
+/// One solve of the comparison of methods. error: distance from the reference plus the reference's
+/// uncertainty.
+struct CostPoint {
+  std::string method = {};
+  solver::Index cells = 0;
+  double tolerance = 0.0;
+  std::string status = {};
+  Number seconds = {};
+  Number error = {};
+};
+
+/// Error against time. choices: the meshes and tolerances that `solve --accuracy` takes.
+struct Cost {
+  std::string number = {};
+  Number reference_uncertainty = {};
+  std::vector<CostPoint> points = {};
+  Json choices = {};
+};
+
+/// An answer of this program or of another one on one mesh.
+struct ProgramAnswer {
+  std::string name = {};
+  solver::Index cells = 0;
+  std::string status = {};
+  std::string version = {};
+  std::string message = {};
+  Number seconds = {};
+  Number cpu_seconds = {};
+  std::string number = {};  ///< the number that is compared
+  Number error = {};
+};
+
+/// Median time of one kind of operator on one mesh, with its interval.
+struct OperatorTime {
+  std::string kind = {};
+  double cells = 0.0;
+  Number seconds = {};
+  Number low = {};
+  Number high = {};
+};
+
+/// Direct sums against convolution. cells: along the longer side, where both take the same time.
+struct OperatorTimes {
+  std::vector<OperatorTime> rows = {};
+  Number cells = {};
+  Number low = {};
+  Number high = {};
+  std::string remark = {};
+};
+
+/// `slipstick bench` without a page.
+struct SceneCosts {
+  Json provenance = {};
+  std::string scene = {};
+  std::vector<PageNumber> numbers = {};
+  Cost cost = {};
+  std::optional<std::vector<ProgramAnswer>> programs = {};
+  OperatorTimes operators = {};
+};
+Json to_json(const SceneCosts& costs);
+
+/// open: neither right nor wrong is shown.
+enum class Shown { holds, open, fails };
+inline Shown shown(bool holds) { return holds ? Shown::holds : Shown::fails; }
+
+/// A sentence of the verdict.
+struct Finding {
+  std::string what = {};
+  std::string line = {};
+  Shown shown = Shown::holds;
+};
+
+/// The head of a page. counts: of hard cases and gates. since: the commit of the page to which `changes`
+/// refer; empty on the first page of a folder.
+struct Headline {
+  std::vector<Finding> findings = {};
+  std::string commit = {};
+  std::vector<std::pair<std::string, double>> numbers = {};
+  Json counts = Json::object();
+  std::string since = {};
+  std::vector<std::string> changes = {};
+
+  /// good, or open or bad where a finding is.
+  std::string verdict() const;
+};
+Json to_json(const Headline& headline);
+
+/// A field of another program whose verdict is known. check: numbers that `check` finds.
+struct KnownField {
+  std::string program = {};
+  std::string file = {};
+  std::string expected = {};
+  std::string verdict = {};
+  Json check = {};
+};
+
+/// The paper's validation. figures: the keys of the data that are only drawn.
+struct PaperValidation {
+  Json figures = {};
+  Json hard = {};
+  std::vector<KnownField> peers = {};
+  std::vector<Judgement> literature = {};
+  std::optional<std::vector<Judgement>> gates = {};  ///< none on a quick page
+};
+
+/// The parts that a page need not have are optional.
+struct Page {
+  Json provenance = {};
+  SceneDescription scene = {};
+  Json answer = {};  ///< result on the finest mesh
+  std::optional<Json> check = {};
+  std::vector<StudyResult> studies = {};  ///< of meshes, unless the scene has its own, and of tolerances
+  std::vector<PageNumber> numbers = {};
+  std::optional<Json> uncertainty = {};
+  std::optional<Cost> cost = {};
+  std::optional<std::vector<ProgramAnswer>> programs = {};
+  std::optional<OperatorTimes> operators = {};
+  std::optional<Json> hard = {};
+  std::optional<Json> digits = {};
+  std::optional<PaperValidation> paper = {};
+  Headline headline = {};
+};
+Json to_json(const Page& page);
+
+}  // namespace slipstick::convergence
