@@ -25,7 +25,7 @@ MARGIN = 1.0  # centimetres
 
 
 class BrowserError(RuntimeError):
-    """What the browser or the page answered instead of a value."""
+    """The browser or the page reported an error."""
 
 
 class Browser:
@@ -50,7 +50,7 @@ class Browser:
         self.driver.quit()
 
     def open(self, file):
-        """Opens a file and waits until it and what it asks for are there."""
+        """Opens a file and waits until it and its resources are loaded."""
         self.driver.get("about:blank")
         self.complaints(), self.requests()
         self.driver.get(Path(file).resolve().as_uri())
@@ -60,7 +60,7 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
 
     def requests(self):
-        """Addresses that the page asked for since this was asked last."""
+        """Addresses that the page has loaded since the last call."""
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
 

@@ -1,4 +1,4 @@
-"""The contact cells of any solution on the grid that they come from, and what maps of them need."""
+"""The contact cells of a solution on their grid, and their maps."""
 
 import numpy as np
 

@@ -48,7 +48,7 @@ def crate(page, files, now):
 
 
 def write(folder, page):
-    """Writes it beside the page. Its time is SOURCE_DATE_EPOCH, where that is set."""
+    """Writes the crate to the folder of the page. Its time is SOURCE_DATE_EPOCH, if that is set."""
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     when = datetime.datetime.fromtimestamp(float(seconds), datetime.timezone.utc) if seconds else \
         datetime.datetime.now(datetime.timezone.utc)

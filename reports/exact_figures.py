@@ -1,4 +1,4 @@
-"""Figures of the exact solutions alone: one function a figure, as in figures.py."""
+"""Figures of the exact solutions: one function for each figure, as in figures.py."""
 
 import numpy as np
 from markupsafe import escape
@@ -111,7 +111,7 @@ def computed_cycle(report, data_dir):
 
 
 def friction_laws(report, data_dir):
-    """Tractions along the radius under each law, computed beside exact, and the errors of twists by mesh."""
+    """Tractions along the radius under each law, computed and exact, and the errors of twists by mesh."""
     figure, (left, right) = style.panels(1, 2, 4.0)
     numbers = []
     for entry in rows(report, "beyond"):
@@ -169,7 +169,7 @@ def _draw_bodies(axis, bodies):
 
 
 def _draw_loop(axis, loop):
-    """Twist and load along a history; returns its first turning point and what is left, unloaded, of the twist."""
+    """Twist and load along a history; returns its first turning point and the twist that remains without load."""
     table = rows(loop, "rows")
     load, twist = column(table, "moment_ratio"), column(table, "twist")
     turns = np.flatnonzero(np.diff(np.sign(np.diff(load)))) + 1

@@ -11,7 +11,7 @@ MAX_POINTS = 80  # of a line, to get words at its points: more are a curve
 
 
 def csv_of(figure):
-    """Every line and bar of a figure, a row a point: panel, series, abscissa, ordinate; "" where it shows maps alone."""
+    """Every line and bar of a figure, a row a point: panel, series, abscissa, ordinate; "" for a figure with maps only."""
     rows = [row for panel, axis in enumerate(figure.axes, 1) for row in _points(panel, axis)]
     if not rows:
         return ""

@@ -12,10 +12,10 @@ LIMIT = LIMIT_WORDS + "&nbsp;=&nbsp;"
 
 @dataclass
 class FigureEntry:
-    """A finished figure and what stands beside it. The texts are HTML, but for the plain `alt`.
+    """A finished figure and its texts, which are HTML except for the plain `alt`.
 
     message: one short sentence, what to see; numbers: (words, number) in the order of their weight; details: how it is
-    made; sources: files of the data folder that it shows, beside what its CSV holds.
+    made; sources: files of the data folder that it shows in addition to its CSV.
     """
     message: str
     details: str

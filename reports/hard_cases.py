@@ -71,7 +71,7 @@ def methods(report, data_dir):
 
 
 def _texts(counts, total):
-    """Message, details, what stands for the figure where it is not seen, and numbers."""
+    """Message, details, alternative text and numbers."""
     first = counts[FIRST]
     numbers = [(f"{_name(method)}: {words}", str(found[verdict])) for method, found in counts.items()
                for verdict, (words, _, _) in VERDICTS.items() if found[verdict]]

@@ -1,4 +1,4 @@
-"""Numbers that others published, beside this program's."""
+"""Published numbers against the numbers of this program."""
 
 import re
 
@@ -22,7 +22,7 @@ def outcome(row):
 
 
 def author(row):
-    """Who and when: "Hertz (1882)" of "Hertz (1882), J. reine angew. Math. 92", else what stands before the comma."""
+    """Author and year: "Hertz (1882)" of "Hertz (1882), J. reine angew. Math. 92", else the text before the comma."""
     return re.match(r"[^(:]*\(\d{4}\)|[^,:]*", row["published"]["source"])[0].strip()
 
 

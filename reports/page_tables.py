@@ -1,4 +1,4 @@
-"""The tables that every page has, and what an index says of each page."""
+"""The tables of every page, and the rows of an index of pages."""
 
 import itertools
 
@@ -42,7 +42,7 @@ def _sums(answer):
 
 
 def remembered(page):
-    """The numbers that stand first, each with what it is, and of what they are."""
+    """The headline numbers, each with its name, and the object to which they refer."""
     answer, judged = page["answer"], _judged(page)
     gap, time, _ = _sums(answer)
     shown = [row for row in page["numbers"] if row is judged or (row["key"] == "stick_radius" and row["error"] is not None)]
@@ -56,7 +56,7 @@ def remembered(page):
 
 
 def _first_sentence(text):
-    """What a scene file says of itself in its first lines, up to the first full stop."""
+    """The first sentence of the comment that opens a scene file."""
     lines = itertools.takewhile(lambda line: line.startswith("#"), text.splitlines())
     return " ".join(line[1:].strip() for line in lines).split(". ")[0].rstrip(".")
 
@@ -127,7 +127,7 @@ def choices(page):
 
 
 def program(page):
-    """What the page's program says of its answer, beside what follows from its field."""
+    """The numbers that the page's program states, and the numbers that follow from its field."""
     answer = page["answer"]
     program, own = answer["program"], answer["program"]["own"]
     body = [["version", program["version"] or "–", ""],

@@ -1,4 +1,4 @@
-"""What `check` says of fields that other programs computed."""
+"""The verdicts of `check` on fields that other programs computed."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ QUANTITIES = {"normal_load_error": "normal load", "contact_radius_error": "conta
               "friction_bound": "friction bound", "slip_direction": "slip direction", "gap": "gap of Coulomb’s law"}
 LOOKS = ({"color": style.GREEN, "marker": "s"}, {"color": style.VERMILION, "marker": "o"},
          {"color": style.BLUE, "marker": "^"})
-MIN_SHOWN = 1e-6  # of what is allowed; smaller values are drawn there
+MIN_SHOWN = 1e-6  # part of the allowed error; smaller values are drawn there
 
 
 def peers(report, data_dir):

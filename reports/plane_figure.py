@@ -13,7 +13,7 @@ from wording import plain, sci, seconds
 # (quantity, title of its panel)
 PANELS = (("twist", "twist"), ("traction_l2", "tractions, root mean square"), ("stick_radius", "stick radius"))
 DEFAULT = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved"}
-# What differs from the default, the first of these that does: key, words, look.
+# The first of these keys that differs from its default: key, words, look.
 KINDS = [("operator", "direct or dense operator", dict(color=style.GREY, marker="x")),
          ("model", "full model", dict(color=style.GREEN, marker="s", markersize=7, markerfacecolor="none")),
          ("pressure", "Hertz’s pressure", dict(color=style.VERMILION, marker="v"))]
@@ -39,7 +39,7 @@ def timed(scene):
 
 
 def draw_panel(axis, scene, quantity, title):
-    """|error| against seconds; returns the handles of what stands in it."""
+    """|error| against seconds; returns the handles of its lines."""
     handles = {}
     for point in timed(scene):
         error = value(point, f"error.{quantity}")
@@ -101,7 +101,7 @@ def draw(scene):
 
 
 def message(scene):
-    """The time that a few errors of the twist take, by what."""
+    """The least time to a few errors of the twist, and the choices that reach it."""
     found = [row for row in rows(scene, "time_to")
              if row["quantity"] == "twist" and row["method"] == "any" and row["point"] is not None]
     if not found:
@@ -130,7 +130,7 @@ def milliseconds(time):
 
 
 def short(point, method=True):
-    """What is not the default, and the mesh."""
+    """The settings that differ from the default, and the mesh."""
     words = [point["method"].replace("_", " ") if point["method"] != "coulomb" else "Newton"] if method else []
     words += [point[key].replace("_", " ") for key in ("operator", "model", "pressure")
               if point[key] != DEFAULT[key]]

@@ -88,7 +88,7 @@ def show_studies(page, folder):
 
 
 def show_speed(benchmarks, folder):
-    """What `slipstick bench` measured: how times grow and cross, and the plane of each scene; none where it has not run."""
+    """The measurements of `slipstick bench`: growth and crossings of times, and the plane of each scene; none without a run."""
     if benchmarks is None or not all((benchmarks / name).is_file() for name in ("scaling.json", "plane.json")):
         return []
     scaling, plane = (results.load(benchmarks / name) for name in ("scaling.json", "plane.json"))
@@ -107,7 +107,7 @@ def tabulate(make, *arguments):
 
 
 def tabulate_all(page):
-    """The page's tables by name; those that it has no part for are missing."""
+    """The page's tables by name; a table without a part of the page is missing."""
     makers = [(page_tables.numbers, "numbers"), (page_tables.program, "answer.program"), (page_tables.choices, "cost"),
               (page_tables.digits, "digits"), (page_tables.programs, "programs")]
     found = {make.__name__: tabulate(make, page) for make, part in makers if figures.has(page, part)}
@@ -122,7 +122,7 @@ def tabulate_all(page):
 
 
 def map_hard_cases(page):
-    """The map of hard cases; where the answer has no other beside it, its one column is named after its own method."""
+    """The map of hard cases; without other methods its only column has the name of the answer's method."""
     try:
         found = hard_cases.square_map(page)
     except results.Unavailable as reason:
@@ -141,7 +141,7 @@ def environment():
 
 
 def write_page(output, templates, benchmarks=None):
-    """Writes output/index.html and output/figures/ from output/data/report.json and the field files beside it, of the paper's page
+    """Writes output/index.html and output/figures/ from output/data/report.json and its field files, of the paper's page
     also from benchmarks/scaling.json and plane.json where they are there; returns the page's content."""
     data = output / "data"
     page = results.load(data / "report.json")

@@ -54,7 +54,7 @@ def printable(tree):
 
 
 def value(tree, path):
-    """What stands at a dotted path; None where it is null."""
+    """The value at a dotted path; None for null."""
     for key in path.split("."):
         if tree is None:
             return None
@@ -83,7 +83,7 @@ def text(tree, path):
 
 
 def reason(tree, path):
-    """Why the value at a path is null: what stands beside the first null on the way."""
+    """Why the value at a path is null: the reason of the first null on the path."""
     for key in path.split("."):
         if tree[key] is None:
             return tree.get(key + "_reason", NO_REASON)
@@ -108,7 +108,7 @@ def column(table, path):
 
 
 def nearest(values, wanted):
-    """Index of the value nearest to the one wanted."""
+    """Index of the value nearest to a given one."""
     return int(np.nanargmin(np.abs(values - wanted)))
 
 

@@ -1,4 +1,4 @@
-"""How times grow with the cells, and where one operator overtakes another, from what `slipstick bench` measured."""
+"""Growth of times with the cells, and crossings of two operators, as `slipstick bench` measures them."""
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -134,7 +134,7 @@ def growth_details(scaling):
 
 
 def setting_up(scaling):
-    """What setting up costs, in applications."""
+    """The cost of the setup in applications."""
     figure, axes = style.panels(1, 2, 3.2)
     handles, sentences = [], []
     for name, of in SETUPS.items():

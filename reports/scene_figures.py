@@ -73,12 +73,12 @@ def _along(steps, key):
     return pairs @ (longest / (np.hypot(*longest) or 1.0))
 
 
-ROUNDING = 1e-9  # loads and motions below this part of their scale are those of rounding
+ROUNDING = 1e-9  # loads and motions below this part of their scale are rounding errors
 FEWEST_ON_A_BRANCH = 4  # points from one reversal to the next that show how it is curved
 
 
 def _scale(answer, steps, key):
-    """The size that a load or a motion may have: of motions that of all of them together, as displacements."""
+    """The scale of a load or a motion; all motions have one scale, as displacements."""
     radius = answer.get("contact_radius") or 0.0
     turned, moved = (np.max(np.abs(_along(steps, motion)), initial=0.0) for motion in ("twist_angle", "displacement"))
     scales = {"moment": answer.get("moment_limit"), "force": answer.get("friction_force"),

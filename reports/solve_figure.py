@@ -25,7 +25,7 @@ SIDES = (0.35, 6.0)  # least and largest width over height of a panel; white spa
 LONGEST_ARROW = 0.055  # of the longer side of the contact's bounding rectangle
 MIN_ARROW = 0.05  # shorter vectors, of the longest, get no arrow
 MAX_SEGMENTS = 2000  # an outline of more becomes a fine image, so that files stay small
-ROUNDING = 1e-9  # loads and motions below this part of their scale are those of rounding
+ROUNDING = 1e-9  # loads and motions below this part of their scale are rounding errors
 HEAD = 0.34  # inches for the message; a line of details takes DETAIL
 DETAIL = 0.19
 
@@ -37,7 +37,7 @@ def round_down(number):
 
 
 class Solved:
-    """A result, its contact cells, and what the panels show of the plane."""
+    """A result, its contact cells, and the part of the plane in the panels."""
 
     def __init__(self, result, cells):
         self.result, self.cells = result, cells
@@ -122,7 +122,7 @@ def draw_pressure(axis, solved):
 
 
 def message(solved):
-    """What the figure shows, in one line."""
+    """The content of the figure in one line."""
     warning = "NOT CONVERGED: " if text(solved.result, "status") != "converged" else ""
     if not np.any(solved.traction):
         return warning + ("No tangential traction" if number(solved.result, "friction") else "No friction")
@@ -137,7 +137,7 @@ def message(solved):
 
 
 def loads(result):
-    """Force, moment and twist, as far as they are more than rounding."""
+    """Force, moment and twist, unless they are rounding errors."""
     parts = []
     friction = (result.get("friction") or 0) * number(result, "normal_load")
     force = result.get("force") or (0, 0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures and writes the page of times and errors from what `slipstick bench` measured."""
+"""Draws the figures and writes the page of times and errors that `slipstick bench` measured."""
 
 import argparse
 import sys

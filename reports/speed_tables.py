@@ -1,4 +1,4 @@
-"""Tables of times and errors, from what `slipstick bench` measured."""
+"""Tables of times and errors that `slipstick bench` measured."""
 
 from plane_figure import milliseconds, power_of_ten, short
 from results import Unavailable, groups, rows, value
@@ -10,7 +10,7 @@ QUANTITIES = {"twist": "twist", "traction_l2": "tractions, root mean square", "s
 
 
 def times_to_errors(plane):
-    """A row for each load, quantity and method: the least time to each error, and what takes it."""
+    """A row for each load, quantity and method: the least time to each error, with its mesh and tolerance."""
     errors = sorted({row["error"] for scene in rows(plane, "scenes") for row in rows(scene, "time_to")}, reverse=True)
     body = []
     for scene in rows(plane, "scenes"):
@@ -35,7 +35,7 @@ def _time(row, scene):
 
 
 def laws(scaling):
-    """What was fitted to each family, beside what theory says."""
+    """The fitted growth of each family, and the growth by theory."""
     body = []
     for found in rows(scaling, "families"):
         law = found["power_law"]

@@ -59,7 +59,7 @@ def handles(studies):
 
 def slope_triangles(axis):
     """Triangles of order 1 and 2 in the upper right corner, which falling errors leave free: from one apex down to twice
-    the cells, with the order beside each."""
+    the cells, each with its order."""
     (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
     end = right / 1.35
     apex = top / 1.6

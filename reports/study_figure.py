@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what `slipstick study` found: errors with their orders, what they are made of, and what tolerances bring."""
+"""Draws the result of `slipstick study`: errors with their orders, error budgets, and errors by tolerance."""
 
 import argparse
 import sys
@@ -22,7 +22,7 @@ from results import InputError, Unavailable, load, nearest, text  # noqa: E402
 from study_result import PARTS, numbers, quantity_words  # noqa: E402
 from wording import LENGTHS, sci, unit_for  # noqa: E402
 
-HEAD = 0.2  # inches about the message of a figure that stands alone; a line of it takes LINE
+HEAD = 0.2  # inches around the message of a single figure; a line of it takes LINE
 LINE = 0.2
 IN_A_SENTENCE = {"floor": "at a floor", "too_few": "of too few meshes"}
 PART_COLOURS = dict(zip(PARTS, (style.BLACK, style.SKY, style.PURPLE, style.GREY)))
@@ -37,7 +37,7 @@ def order_words(order):
 
 
 def used_meshes(size, order):
-    """Which meshes a fit took; its sizes are means over the grids that converged."""
+    """The meshes of a fit; its sizes are means over the grids that converged."""
     used = np.zeros(size.size, bool)
     for one in order["sizes"]:
         used[nearest(np.log(size), np.log(one))] = True
@@ -49,7 +49,7 @@ def has_exact_answer(series, quantity):
 
 
 def error_title(series, quantity):
-    """The quantity, and what its error is from where no exact answer says it."""
+    """The quantity, and the reference of its error if that is not the exact answer."""
     return quantity_words(quantity) + ("" if has_exact_answer(series, quantity) else ", from the extrapolated value")
 
 
@@ -146,7 +146,7 @@ def tolerance_line(axis, series, found, **changes):
 
 
 def draw_achieved(axis, series):
-    """The certificate's gap against what was asked for; grey: as much as was asked for."""
+    """The certificate's gap against the requested tolerance; grey: equality."""
     requested = np.concatenate([numbers(one.tolerances, "requested") for one in series])
     ends = np.array([requested.min(), requested.max()])
     axis.plot(ends, ends, ":", color=style.GREY)
@@ -160,7 +160,7 @@ def draw_achieved(axis, series):
 
 
 def draw_tolerance_errors(axis, series, quantity):
-    """Errors, and the part of them due to stopping there; of a value without an exact answer that part alone."""
+    """Errors and their part by stopping there; only that part for a value without an exact answer."""
     is_error = has_exact_answer(series, quantity)
     dashed = dict(linestyle="--", marker="", linewidth=0.9) if is_error else {}
     for one in series:
@@ -174,7 +174,7 @@ def draw_tolerance_errors(axis, series, quantity):
 
 
 def moved_by_tolerance(series, quantities):
-    """Those of the quantities that a tolerance has some effect on, or whose error is known."""
+    """The quantities with a known error, or with an effect of the tolerance."""
     def shown(quantity):
         rows = [numbers(one.tolerances, quantity) if has_exact_answer(series, quantity) else
                 numbers(one.tolerances, "iteration", quantity) for one in series]
@@ -190,7 +190,7 @@ def look_handles(series):
 
 
 def draw(study, head=0.0):
-    """The figure of a study, `head` inches free above it, and what it says: a FigureEntry."""
+    """The figure of a study with `head` free inches above it, as a FigureEntry."""
     series = study_result.read(study)
     quantities = study_result.main_quantities(series)
     to_tolerances = [one for one in series if one.tolerances]
@@ -286,7 +286,7 @@ def failures(study):
 
 
 def message(series, quantities):
-    """What the figure shows, in a sentence or two."""
+    """The content of the figure in a sentence or two."""
     sentences = []
     if study_result.has_meshes(series):
         verdicts = Counter(one.order(path)["verdict"] for one in series for _, path in quantities)

@@ -1,4 +1,4 @@
-"""What `slipstick study` wrote: its series, how each looks in figures, and their main quantities."""
+"""The result of `slipstick study`: its series, their looks in figures, and their main quantities."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,7 +78,7 @@ def _choices(series, keys):
 
 
 def _keys_of_looks(series):
-    """The key that colours tell, and the keys that markers tell; both the same one where it is alone."""
+    """The key for colours and the keys for markers; a single key is used for both."""
     keys = list(next(iter(series))["set"])
     coloured = PRESSURE if PRESSURE in keys else next(iter(keys), None)
     return coloured, [key for key in keys if key != coloured] or [coloured]
@@ -102,8 +102,8 @@ def read(study):
 
 
 def told_by(series):
-    """What colours say and what markers say: two lists of (words, look), one of them where a single key varies, none
-    where nothing does."""
+    """The legends of colours and markers: two lists of (words, look), one of them for a single varied key, none
+    without varied keys."""
     coloured, marked = _keys_of_looks([one.content for one in series])
     if coloured is None:
         return [], []

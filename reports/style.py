@@ -84,7 +84,7 @@ def whole_decades(axis):
         axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
 
 
-# What to leave out of each kind of file so that equal numbers give equal files: the date.
+# The metadata to omit from each kind of file, so that equal numbers give equal files: the date.
 FORMATS = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
 CANVASES = {".svg": FigureCanvasSVG, ".pdf": FigureCanvasPdf, ".png": FigureCanvasAgg}
 

@@ -116,7 +116,7 @@ def study_orders(study):
 
 
 def study_expectations(study):
-    """Which order theory gives, and why: a row for each reason."""
+    """The order by theory, and its reason: a row for each reason."""
     series = study_result.read(study)
     reasons = {}
     for words, path in study_result.main_quantities(series):
@@ -140,7 +140,7 @@ BUDGET = [
 
 
 def _in_budget(series):
-    """The main quantities whose errors are known: on one mesh those alone that have an exact answer."""
+    """The main quantities whose errors are known: on one mesh only quantities with an exact answer."""
     found = study_result.main_quantities(series)
     if study_result.has_meshes(series):
         return found

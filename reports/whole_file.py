@@ -10,7 +10,7 @@ LONGEST_STEM = 200  # characters of a file's name that are in its draft's
 
 
 def lock(file):
-    """Who writes a draft has it locked; the system lets go when that process ends."""
+    """The process that writes a draft holds a lock on it; the system releases the lock when the process ends."""
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
@@ -27,7 +27,7 @@ def remove_abandoned_drafts(folder, stem):
 
 
 def write_whole(path, content):
-    """Writes bytes to a draft beside the file, which takes its place. A link stays one; what is no plain file is
+    """Writes bytes to a draft in the folder of the file, then renames it. A link stays one; what is no plain file is
     written to as it is. Raises OSError, with the file's name, where it cannot be written."""
     path = path.resolve()
     if path.exists() and not path.is_file():

@@ -24,7 +24,7 @@ def law(result):
 
 
 def sci(number):
-    """2.1×10⁻⁶; plain 0 for zero; NaN stands for a number that was null."""
+    """2.1×10⁻⁶; plain 0 for zero; NaN means a number that is null."""
     if math.isnan(number):
         return "not available"
     if number == 0:

@@ -13,9 +13,9 @@ namespace slipstick::convergence {
 /// Every key that a gate file may have.
 const solver::SettingKeys& gate_keys();
 
-/// The gates of a file in the order of their lines. Paths are relative to the file's folder; those of result
-/// files to `results_folder`, if it is not empty. Throws InputError with file, key, value and what is
-/// allowed.
+/// The gates of a file in the order of their lines. Paths are relative to the file's folder, paths of result
+/// files to `results_folder` if it is not empty. Throws InputError with file, key, value and the allowed
+/// values.
 std::vector<Gate> read_gates(const std::filesystem::path& file,
                              const std::filesystem::path& results_folder = {});
 

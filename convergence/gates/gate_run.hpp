@@ -14,7 +14,7 @@ namespace slipstick::convergence {
 /// is refused, and the others are judged.
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
 
-/// The sources of the gates in their order, then those of the numbers that gates are relative to.
+/// The sources of the gates in their order, then the sources of the numbers to which gates are relative.
 std::vector<GateSource> sources_of(const std::vector<Gate>& gates);
 
 /// The solves of step 1. A source that cannot be read has none.

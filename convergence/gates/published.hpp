@@ -12,7 +12,7 @@ namespace slipstick::convergence {
 std::optional<PrintedNumber> read_printed(const std::string& text);
 
 /// Judges a gate whose bound is Published.
-///   1. Our own error is `own_error` of the gate file, or the result states it beside the number
+///   1. Our own error is `own_error` of the gate file, or the result states it next to the number
 ///      (`uncertainty`) or in an object around it (relative_uncertainty).
 ///   2. The numbers agree within half a unit of the last printed digit + argument_error + our own error.
 ///   3. Where our own error is larger than the other two, agreement shows nothing: the outcome is `reported`

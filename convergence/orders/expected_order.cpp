@@ -28,9 +28,9 @@ bool is_norm(const std::string& quantity, const std::string& norm) {
 ExpectedOrder of_field(const std::string& quantity, Edge edge) {
   if (edge == Edge::singular) {
     if (is_norm(quantity, "l1")) {
-      return {
-          0.5,
-          "beside a punch's edge the traction goes like d^(-1/2), and the edge's cells hold h^(1/2) of it"};
+      return {0.5,
+              "near a punch's edge the traction is proportional to d^(-1/2), and the cells at the edge hold "
+              "h^(1/2) of it"};
     }
     return {NAN, "a traction like d^(-1/2) at the edge has no finite norm of this kind"};
   }
@@ -55,9 +55,10 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
     return {1.0, "an edge found by counting whole cells is known to a part of one"};
   }
   if (quantity.starts_with("stick_")) {
-    return {1.0,
-            "determined from the slip in the 24 cells beside the edge, at most: once the ring is wider, what "
-            "the mesh does there is a part of a cell; on coarser meshes the error falls faster"};
+    return {
+        1.0,
+        "determined from the slip in at most 24 cells next to the edge: for a wider ring its error is a part "
+        "of a cell; on coarser meshes the error falls faster"};
   }
   if (edge_of(scene) == Edge::jump) {
     return {1.0,

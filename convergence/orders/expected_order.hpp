@@ -14,14 +14,14 @@ struct ExpectedOrder {
   std::string why;
 };
 
-/// An error that a study looks at where there is an exact answer.
+/// An error that a study follows if there is an exact answer.
 struct ErrorQuantity {
   std::string path;   ///< into a result
-  std::string label;  ///< for a person
+  std::string label;  ///< in tables
 };
 const std::vector<ErrorQuantity>& error_quantities();
 
-/// Quantities that it looks at where there is none, or where it does not say them.
+/// Quantities that a study follows if the exact answer does not have them.
 const std::vector<std::string>& value_quantities();
 
 /// The powers of the cell size in the error of a number of loads or motions where the edges of contact and

@@ -168,7 +168,7 @@ Crossover find_crossover(const Family& slow, const Family& quick) {
   }
   const std::vector<double> halves = half_intervals(both);
   if (std::ranges::any_of(halves, [](double half) { return std::isnan(half); })) {
-    found.remark += found.remark.empty() ? "one repetition tells no uncertainty" : "";
+    found.remark += found.remark.empty() ? "the uncertainty of one repetition is unknown" : "";
     return found;
   }
   const auto crossing_at = [&](double sign) {

@@ -8,7 +8,7 @@
 /// How times grow with the cells along a side, and where one way to compute overtakes another.
 namespace slipstick::convergence {
 
-/// The repetitions of a benchmark at one size. Those that are no positive number take no part in anything.
+/// The repetitions of a benchmark at one size. Repetitions without a positive number are ignored.
 struct SizedSeconds {
   double cells;
   std::vector<double> seconds;
@@ -18,7 +18,7 @@ struct SizedSeconds {
 using Family = std::vector<SizedSeconds>;
 
 /// The median of repetitions with its 95 % interval: Student's, of their logarithms, widened as a median is
-/// less certain than a mean. NaN: no repetition, or one alone.
+/// less certain than a mean. NaN: fewer than two repetitions.
 struct TypicalSeconds {
   double seconds;
   double low;

@@ -42,7 +42,7 @@ struct Extrapolation {
   double left;  ///< distance of the finest value from the limit, signed
 };
 
-/// The order p at which (coarse - middle)/(middle - fine) is what values = limit + C size^p give; that ratio
+/// The order p of values = limit + C size^p with the given ratio (coarse - middle)/(middle - fine), which
 /// grows with p.
 Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, const MeshSample& fine) {
   const double ratio = (coarse.value - middle.value) / (middle.value - fine.value);
@@ -62,7 +62,7 @@ Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, 
   return {order, (middle.value - fine.value) / std::expm1(order * finer)};
 }
 
-/// In words; empty where the order of the finest three meshes has not fallen from that of the three before.
+/// Empty, unless the order of the finest three meshes is lower than the order of the three before.
 std::string fall_of_order(const Meshes& meshes) {
   if (meshes.size() <= kMinMeshes) return "";
   const auto finest = meshes.end() - kMinMeshes;
@@ -72,7 +72,7 @@ std::string fall_of_order(const Meshes& meshes) {
   return fmt::format("the order still falls, from {:.2f} to {:.2f} on the finest meshes", before, now);
 }
 
-/// The verdict: as far as the values decide it alone, else by the interval.
+/// The verdict by the values; if they do not decide it, by the interval of the order.
 Order judged(Order order, const Meshes& meshes, double expected, const std::string& left_out) {
   order = judged_by_interval(order, expected);
   const MeshSample& finest = meshes.back();
@@ -134,7 +134,7 @@ PowerFit power_fit(const Meshes& meshes, const std::vector<double>& powers, bool
   return {powers, weighted, coefficients, std::sqrt(squares / left)};
 }
 
-/// The power of least deviation, by ever closer looks at its logarithm; none where it is at an end.
+/// The power of least deviation, by successive refinement of its logarithm; none at an end of the range.
 std::optional<PowerFit> fit_with_order(const Meshes& meshes, bool weighted) {
   constexpr double least = 0.02;  // a power this small looks like a logarithm
   constexpr double most = 100.0;
@@ -270,7 +270,8 @@ double grid_uncertainty(const PowerFit& fit, double order, const Meshes& meshes)
   return kCautious * fit.deviation / mean_change * (std::abs(fitted) + fit.deviation + residual);
 }
 
-/// From three meshes, with what an uncertainty in each value does to both.
+/// An extrapolation from three meshes, with the uncertainties of order and limit by the uncertainty of each
+/// value.
 struct Propagated {
   Extrapolation found;
   double order_uncertainty;

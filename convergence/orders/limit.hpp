@@ -11,7 +11,7 @@ namespace slipstick::convergence {
 struct Limit {
   double value;        ///< NaN only where there is no finite sample
   double uncertainty;  ///< how far the true limit may be from it; NaN where nothing says
-  Order order;         ///< of value - limit; its constant is NaN where the limit is not that of its power
+  Order order;         ///< of value - limit; its constant is NaN if the limit is not the limit of its power
   std::string method;  ///< how it was found
 };
 
@@ -25,25 +25,25 @@ struct Limit {
 /// safety factor F = 1.25 for p from 0.5 to 2.1 and 3 otherwise, and 3 s/D (|e| + s + |d|) where s >= D. The
 /// limit of the fit is given that uncertainty, and the noise and scatter of the finest mesh.
 ///
-/// The interval of the order is that of the linearised fit, with meshes - 3 degrees of freedom. Its verdict:
-/// as of fit_order(), where values that turn back are oscillatory, values of the finest meshes that are not
-/// distinguished are a floor, and an order above the expected one that falls from the second finest three
-/// meshes to the finest three is preasymptotic. Throws as coarsest_first().
+/// The interval of the order follows from the linearised fit, with meshes - 3 degrees of freedom. Its
+/// verdict: as of fit_order(), where values that turn back are oscillatory, values of the finest meshes that
+/// are not distinguished are a floor, and an order above the expected one that falls from the second finest
+/// three meshes to the finest three is preasymptotic. Throws as coarsest_first().
 Limit least_squares_limit(const std::vector<MeshSample>& values, double expected);
 
 /// Richardson's extrapolation from the three finest meshes with the order p they show, whatever the ratios of
 /// their sizes. The uncertainty of the limit is F |e|, e being the finest mesh's distance from it, with F as
-/// above, and what noise and scatter of the three values do to the limit. Where they show no p between 0.5
-/// and 3, the finest value stands, with three times their range (their earlier rule, Computers & Fluids
-/// 38, 2009). Three values leave no freedom to determine an interval from: the order's is what
-/// noise and scatter leave open, and its verdict rests on the agreement with the expected order. From two
+/// above, plus the effect of noise and scatter of the three values on the limit. Where they show no p between
+/// 0.5 and 3, the finest value stands, with three times their range (their earlier rule, Computers & Fluids
+/// 38, 2009). Three values leave no freedom to determine an interval from: the order's interval
+/// follows from noise and scatter, and its verdict from the agreement with the expected order. From two
 /// meshes, the finest value and three times the distance that the expected order gives (Roache 1998).
 Limit richardson_limit(const std::vector<MeshSample>& values, double expected);
 
 /// Extrapolation of values whose error is a sum of known powers of the size, as where cells end at a punch's
 /// edges (aligned_edge_powers()): with the first `powers`, as many as leave one mesh over, through the finest
 /// meshes. The uncertainty is twice the larger of its distances from the same extrapolation without the
-/// finest mesh and from that with one power less, and what noise and scatter of the values do to it: 4 of 600
+/// finest mesh and from the extrapolation with one power less, plus the effect of noise and scatter: 4 of 600
 /// made sequences were off by more, whose corners had other powers (1 + 2 alpha from 1.5 to 1.9). The order
 /// is that of value - limit, by fit_order(). Fewer than three meshes: least_squares_limit(). Throws as
 /// coarsest_first().

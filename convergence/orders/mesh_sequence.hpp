@@ -13,10 +13,10 @@ struct MeshSample {
   double value;         ///< the quantity itself, or its signed error; mean over the grids
   double spread = 0.0;  ///< standard deviation from grid to grid, of one grid
   int grids = 1;
-  double noise = 0.0;  ///< bound of what iteration and rounding leave undetermined
+  double noise = 0.0;  ///< bound of the errors by iteration and rounding
 };
 
-/// In the place of a number that there is none of.
+/// A missing number.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The probability that all intervals hold, and that below the upper end of a two-sided one.
@@ -49,7 +49,7 @@ inline constexpr double kBelievedScatter = 2.0;
 /// Standard error of the mean over the grids.
 double standard_error(const MeshSample& sample);
 
-/// How far a value may be from that of its mesh: noise, and scatter of the mean.
+/// Bound of the distance of a value from the converged mean of its mesh: noise, and scatter of the mean.
 double uncertainty(const MeshSample& sample);
 
 /// Up to here an error of the sample cannot be distinguished from zero.

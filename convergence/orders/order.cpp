@@ -29,8 +29,8 @@ struct Scatter {
   double freedom = 0.0;
 };
 
-/// A few grids tell their spread roughly, so half of the variance is that of all meshes together, relative to
-/// the errors.
+/// The spread of a few grids is uncertain, so half of the variance is the mean of all meshes, relative to the
+/// errors.
 Scatter scatter(const Meshes& meshes) {
   const auto count = static_cast<Eigen::Index>(meshes.size());
   ArrayXd own(count);

@@ -29,15 +29,15 @@ inline constexpr double kWidestHalf = 0.5;
 /// and scatter. errors: signed, in any order of the meshes. expected: the order that theory gives; NaN where
 /// it gives none, and then the verdict is preasymptotic at best. The interval is Student's. Where all meshes
 /// have several grids whose spread explains the residuals (chi squared, 95 %), it follows from the spread,
-/// and meshes weigh as that says; otherwise from the residuals, with equal weights. What the noise can do to
-/// the order comes on top. Throws as coarsest_first().
+/// and meshes have weights by their spread; otherwise from the residuals, with equal weights. The effect of
+/// the noise on the order is added. Throws as coarsest_first().
 ///
 /// Verdict, the first that holds:
 /// - too_few: fewer than three meshes have a number, or an error above noise;
 /// - floor: the finest error is lost in noise or scatter, or has stopped falling;
 /// - oscillatory: the sign changes, other than once before the three finest meshes (the meshes before that
 ///   take no part), or the size rises on one mesh and falls on another;
-/// - preasymptotic: the order between the two finest meshes is not that of all, to kOrderMargin, and a
+/// - preasymptotic: the order between the two finest meshes is not the order of all, to kOrderMargin, and a
 ///   curvature is significant at 95 % (or there are too few meshes to say);
 /// - superconvergent: the interval lies above expected + kOrderMargin;
 /// - preasymptotic: the interval is wider than kWidestHalf on a side, or ends below expected - kOrderMargin;

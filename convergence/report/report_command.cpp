@@ -71,8 +71,8 @@ ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
   return runs.pool();
 }
 
-/// Where the page of each scene goes: the folder itself, or of several scenes one below it for each, named
-/// after its file. Throws InputError where two would have one folder, or a scene lies in the page's data.
+/// The folder of each page: the output folder, or for several scenes a folder in it with the name of the
+/// scene's file. Throws InputError for two equal folders, and for a scene in the data of the page.
 std::vector<fs::path> page_folders(const ReportRequest& request) {
   std::vector<fs::path> folders;
   for (const std::string& scene : request.scenes) {
@@ -89,7 +89,7 @@ std::vector<fs::path> page_folders(const ReportRequest& request) {
   return folders;
 }
 
-/// The page that the command line asks for. Throws InputError for words that are none.
+/// The page of the command line. Throws InputError for a word that cannot be read.
 PageRequest page_request(const ReportRequest& request) {
   PageRequest page{.base = {.scene = {}, .overrides = request.runs.overrides}, .size = usual_page()};
   ValidationSize validation = page_validation();
@@ -156,7 +156,7 @@ int run_report(ReportRequest request, std::ostream& text, Json& result) {
   if (asked.validation) {
     if (!request.runs.overrides.empty()) {
       throw solver::InputError("--program",
-                               "the paper's validation is this program's own; allowed: scenes, as "
+                               "the paper's validation is for this program only; allowed: scenes, as "
                                "`slipstick report convergence/scenes/paper.toml --program FILE`");
     }
     request.scenes.push_back(project_file("convergence/scenes/paper.toml"));
@@ -171,8 +171,8 @@ RunCommand add_report_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("report", "Draw the page of any scene: errors, orders, times, verdict");
   command->add_option("scene", request->scenes,
-                      "scene files, a page for each; left out: that of the paper's scene, with the paper's "
-                      "validation before");
+                      "scene files, a page for each (default: the paper's scene, with the paper's "
+                      "validation)");
   command->add_option("--output", request->output, "folder for the page")->capture_default_str();
   CLI::Option* const quick =
       command->add_flag("--quick", request->quick, "small grids, no gates: seconds instead of minutes");
@@ -182,30 +182,27 @@ RunCommand add_report_command(CLI::App& app) {
                    "folder that `slipstick bench` wrote; the page shows its times where there are some")
       ->capture_default_str();
   command->add_option("--want", request->wanted,
-                      "QUANTITY=ERROR, as twist=1e-3: the verdict is bad where mesh and steps leave a larger "
-                      "error, or one that "
-                      "is not known");
+                      "QUANTITY=ERROR, as twist=1e-3: the verdict is bad if the error by mesh and steps is "
+                      "larger or unknown");
   command->add_option(
       "--uncertain", request->uncertain,
-      "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5%; the page says what they "
-      "make of each number");
+      "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5%; the page has the resulting "
+      "uncertainty of each number");
   command->add_option("--junit", request->junit, "write the verdicts of scenes as JUnit's XML");
-  command->add_option("--summary", request->summary, "write them as a table in Markdown");
+  command->add_option("--summary", request->summary, "write the verdicts as a table in Markdown");
   add_memory_option(*command, request->runs.memory_limit);
   request->runs.add_programs_to(*command);
   command
-      ->add_option(
-          "--beside", request->beside,
-          "files of other programs (TOML), whose answers, times and hard cases the page shows beside")
+      ->add_option("--beside", request->beside,
+                   "files of other programs (TOML): the page compares their answers, times and hard cases")
       ->delimiter(',');
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
       "convergence/scenes/ellipse.toml --want twist=1e-2 --output build/ellipse\n  slipstick report "
       "convergence/scenes/*.toml --quick --output "
-      "build/gallery\nFinished solves are kept: repeating an "
-      "interrupted command goes on from there.\nExit code 0: done; 1: a page says bad (not where it says "
-      "that "
-      "something is not shown); 2: it could not be made.");
+      "build/gallery\nFinished solves are kept: an "
+      "interrupted command continues when it is repeated.\nExit code 0: no verdict is bad; 1: a verdict "
+      "is bad; 2: a page could not be made.");
   return [request](std::ostream& text, Json& result) { return run_report(*request, text, result); };
 }
 

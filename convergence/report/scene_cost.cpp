@@ -26,7 +26,7 @@ using solver::Index;
 const double kCostTolerances[] = {1e-3, 1e-6, 1e-9};
 const double kWanted[] = {1e-2, 1e-3, 1e-4};
 
-/// The choices of `solve --accuracy`, a row for each wanted error.
+/// The choices of `solve --accuracy`, a row for each of some errors.
 Json choices(const solver::Scene& scene) {
   Json rows = Json::array();
   for (const double wanted : kWanted) {

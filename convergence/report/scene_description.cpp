@@ -41,7 +41,7 @@ std::string material_text(const solver::Material& material) {
 }
 
 std::string load_text(const solver::Step& step) {
-  std::string text = step.normal ? fmt::format("{:g} N", *step.normal) : "that of the pressure's file";
+  std::string text = step.normal ? fmt::format("{:g} N", *step.normal) : "load of the pressure's file";
   if (const auto ratio = solver::value_if<solver::MomentRatio>(step.torsion)) {
     if (*ratio != 0.0) text += fmt::format(", moment {:.9g} of its limit", *ratio);
   } else if (const auto moment = solver::value_if<solver::Moment>(step.torsion)) {

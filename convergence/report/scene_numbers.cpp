@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 using solver::Index;
 using solver::Scene;
 
-/// Parts of the finest mesh that a mesh study takes, and those from which the answer's mesh error follows.
+/// Meshes of the study, and meshes of the answer, as parts of the finest one.
 constexpr double kStudyParts[] = {0.125, 0.1875, 0.25, 0.375, 0.5, 0.75, 1.0};
 constexpr double kAnswerParts[] = {0.25, 0.5, 1.0};
 const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
-/// Loads below this part of all that friction carries are those of rounding.
+/// Loads below this part of the limit load are rounding errors.
 constexpr double kRounded = 1e-9;
 
 /// The basis of an error against an exact answer.

@@ -67,7 +67,7 @@ std::vector<HardCase> hard_cases(const RunSpec& base, const Scene& scene, const 
   add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", scene.name, mesh);
   if (!meshes.given) {
     for (const Index cells : kCoarseCells) {
-      add("coarse_meshes", "a few cells: what is uncertain must be said", std::to_string(cells),
+      add("coarse_meshes", "a few cells: the answer must state its uncertainty", std::to_string(cells),
           {cells_override(scene, cells)});
     }
   }
@@ -78,7 +78,7 @@ std::vector<HardCase> hard_cases(const RunSpec& base, const Scene& scene, const 
   for (const char* ratio : kRatios) {
     std::vector<std::string> overrides = mesh;
     overrides.push_back(fmt::format("load.moment_ratio={}", ratio));
-    add("load_ramp", "next to no moment, and next to all that friction carries", ratio, overrides);
+    add("load_ramp", "tiny and near-limit moments", ratio, overrides);
   }
   return cases;
 }
@@ -87,7 +87,7 @@ bool is_long(const Scene& scene, const PageSize& size) {
   return scene.steps.size() * static_cast<std::size_t>(scene.cycles) > size.long_history;
 }
 
-/// The same for a history, whose solves take as many times longer as it has steps.
+/// Coarser meshes for a long history, whose time is proportional to its steps.
 PageSize for_history(PageSize size, const Scene& scene) {
   if (!is_long(scene, size)) return size;
   size.most_cells /= 2;
@@ -246,7 +246,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   const PageScene at = page_scene(request);
   const auto& [base, scene, size, meshes, own] = at;
   if (!own && !request.uncertain.empty())
-    throw solver::InputError("--uncertain", "not beside solver.program; allowed: without it");
+    throw solver::InputError("--uncertain", "not with solver.program; allowed: a scene without a program");
   const std::vector<UncertainInput> uncertain =
       uncertain_inputs(base.scene, base.overrides, request.uncertain);
   solver::make_folder(folder);

@@ -12,20 +12,20 @@
 #include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
 
-/// The page of any scene: what it is, its answer, how fast errors fall, what an error costs, where it breaks.
+/// The page of any scene: description, answer, orders of convergence, error against time, hard cases.
 namespace slipstick::convergence {
 
-/// How much is solved for a page.
+/// The size of a page.
 struct PageSize {
   solver::Index most_cells;  ///< along the longer side of the answer's mesh; a scene with fewer keeps its own
-  /// Of the study's finest mesh, which has twice the answer's cells up to here.
+  /// Bound of the study's finest mesh, which else has twice the answer's cells.
   solver::Index most_study_cells;
   int shifts;                          ///< grids of each mesh, see Study; two for a history
   solver::Index method_cells;          ///< the finest mesh on which methods are compared
-  std::vector<double> operator_cells;  ///< on which direct sums are timed beside convolution
-  int repetitions;                     ///< of those
-  bool finer_meshes;                   ///< hard variants of the scene are held to finer meshes
-  std::size_t long_history;            ///< of more steps than this all meshes are half as fine
+  std::vector<double> operator_cells;  ///< meshes for direct sums against convolution
+  int repetitions;                     ///< of each of these times
+  bool finer_meshes;                   ///< hard variants are also solved on finer meshes
+  std::size_t long_history;            ///< a history with more steps has half as fine meshes
 };
 PageSize quick_page();
 PageSize usual_page();
@@ -33,22 +33,22 @@ PageSize full_page();
 /// The same for another program, which may take a hundred times as long.
 PageSize for_program(PageSize size);
 
-/// A relative error that a user wants a number of the result to have at most.
+/// The largest relative error that the user accepts for a number of the result.
 struct WantedError {
-  std::string quantity;  ///< key of a number of the result, twist_angle; "twist" means that too
+  std::string quantity;  ///< key of a number of the result, twist_angle; "twist" is short for it
   double error;
 };
 /// "twist=1e-3". Throws InputError for anything else, and for an error that is not between 0 and 1.
 WantedError read_wanted_error(const std::string& word);
 
-/// What a page is asked for.
+/// The input of a page.
 struct PageRequest {
-  RunSpec base;  ///< the scene; overrides may name a program, which then answers in place of a method
+  RunSpec base;  ///< the scene; overrides may name a program that solves it
   PageSize size;
   std::vector<WantedError> wanted = {};
   std::vector<std::string> uncertain = {};    ///< as uncertain_inputs() takes them
-  std::vector<BesideMethod> beside = {};      ///< programs whose answers stand beside
-  std::optional<Validation> validation = {};  ///< of the paper; its scene is then the page's
+  std::vector<BesideMethod> beside = {};      ///< programs to compare with
+  std::optional<Validation> validation = {};  ///< of the paper, for the page of its scene
 };
 
 /// Solves all that the page shows and judges it, then writes report.json and answer.h5 (the fields on the
@@ -57,8 +57,8 @@ struct PageRequest {
 ///   2. Error against time; equivalent scenes, coarse meshes and extreme loads; digits left by rounding.
 ///   3. The paper's validation, if it is requested.
 ///   4. The headline: findings and changes since the page that was in the folder.
-/// Throws InputError for a scene that cannot be read and for a wanted quantity that the result does not have;
-/// std::runtime_error where the scene itself has no answer, and as the pool does.
+/// Throws InputError for a scene that cannot be read and for a quantity of `wanted` that the result does not
+/// have; std::runtime_error where the scene itself has no answer, and as the pool does.
 Page scene_page(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// A case for each finding.

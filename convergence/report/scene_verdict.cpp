@@ -60,7 +60,7 @@ Finding judge_literature(const std::vector<Judgement>& gates) {
 Finding judge_gates(const std::vector<Judgement>& gates) {
   std::string line = fmt::format("{} of {} pass", number_with(gates, Outcome::passed), gates.size());
   if (const long expected = number_with(gates, Outcome::failed_as_expected); expected > 0) {
-    line += fmt::format(", {} fails as it should", expected);
+    line += fmt::format(", {} fails as expected", expected);
   }
   line += wrong_gates(gates);
   if (const Judgement* const nearest = nearest_to_bound(gates); nearest != nullptr) {
@@ -88,13 +88,13 @@ std::string error_text(const PageNumber& row) {
   return fmt::format("{} off by {:.1e} ({})", std::isnan(row.mesh) ? "is" : "may be", error, row.basis);
 }
 
-/// The setting that halves the wanted error's larger part.
+/// The setting that reduces the larger part of an error to half of `wanted`.
 std::string cure(const PageNumber& row, double wanted) {
   if (row.path > row.mesh) {
-    return fmt::format("; set solver.substeps {:.0f} times as high, or see what solve --accuracy {:g} takes",
+    return fmt::format("; set solver.substeps {:.0f} times as high, or use solve --accuracy {:g}",
                        std::ceil(2.0 * row.path / wanted), wanted);
   }
-  return std::isnan(row.error) ? "" : "; take more grid.cells, and a page without --quick";
+  return std::isnan(row.error) ? "" : "; increase grid.cells, and omit --quick";
 }
 
 /// Whether two values differ by more than machines and clocks do.
@@ -227,7 +227,7 @@ Finding judge_hard_beside(const Json& hard) {
 
 Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string& number) {
   const PageNumber* const row = find_row(numbers, number);
-  if (row == nullptr) return {"Accuracy", "how far the answer may be off is not known", Shown::open};
+  if (row == nullptr) return {"Accuracy", "the error of the answer is unknown", Shown::open};
   const bool holds = std::abs(row->error) <= solver::kPoorlyResolved;
   return {"Accuracy",
           fmt::format("the {} {}{}", row->words, error_text(*row),
@@ -239,7 +239,7 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
   if (const PageNumber* const row = find_row(numbers, wanted.quantity)) {
     const bool holds = std::abs(row->error) <= wanted.error;
     return {fmt::format("Error of the {}", row->words),
-            fmt::format("it {}, {:g} wanted{}", error_text(*row), wanted.error,
+            fmt::format("it {}, at most {:g} is allowed{}", error_text(*row), wanted.error,
                         holds ? "" : cure(*row, wanted.error)),
             shown(holds)};
   }
@@ -250,7 +250,7 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
 }
 
 std::vector<Finding> judge_validation(const PaperValidation& paper) {
-  Finding gates{"Gates", "left out of a quick page; make gate runs them"};
+  Finding gates{"Gates", "not on a quick page; make gate runs them"};
   if (paper.gates) gates = judge_gates(*paper.gates);
   return {std::move(gates), judge_hard(paper.hard, "Hard scenes"), judge_known_fields(paper.peers),
           judge_literature(paper.literature)};
@@ -302,7 +302,7 @@ std::string headline_text(const Headline& headline) {
     for (const Finding& finding : headline.findings) {
       if (finding.shown == Shown::open) open.push_back(finding.what);
     }
-    text = fmt::format("Nothing is wrong, but open: {}\n", fmt::join(open, ", "));
+    text = fmt::format("No finding fails, but open: {}\n", fmt::join(open, ", "));
   }
   const auto add = [&](const std::string& what, const std::string& line) {
     text += fmt::format("  {:<16} {}\n", what, line);

@@ -35,14 +35,14 @@ Finding judge_hard(const Json& hard, const std::string& what);
 /// other programs; published numbers agree.
 std::vector<Finding> judge_validation(const PaperValidation& paper);
 
-/// The counts of hard cases and gates are those of the page.
+/// Takes the counts of hard cases and gates from the page.
 Headline headline_of(std::vector<Finding> findings, const Page& page);
 
 /// The changes of verdict, counts and numbers since an earlier headline, a sentence each; times do not count.
 std::vector<std::string> changes(const Headline& now, const Json& before);
 
 /// The headline with `since` and `changes` against an earlier one, which may be null. If nothing has changed,
-/// both are those of the earlier headline.
+/// both keep their earlier values.
 Headline with_changes(Headline now, const Json& before);
 
 /// For a person, ten lines at most.

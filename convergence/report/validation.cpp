@@ -28,8 +28,7 @@ namespace fs = std::filesystem;
 using solver::Index;
 
 constexpr double kProfileRatios[] = {0.5, 0.9};
-constexpr double kMethodsRatio =
-    0.9;  ///< load at which methods are compared, and that of the ellipse's scene
+constexpr double kMethodsRatio = 0.9;  ///< load for the comparison of methods, as in the scene of the ellipse
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
 constexpr const char* kMethods[] = {"coulomb", "projected_gradient", "paper"};
 

@@ -17,10 +17,9 @@ using solver::SceneReader;
 /// Cells along the longer side: with fewer a contact has no inside; with more one field takes gigabytes.
 constexpr double kMinStudyCells = 8.0;
 constexpr double kMaxStudyCells = 16384.0;
-/// More say nothing new about the spread.
+/// More grids do not change the spread.
 constexpr double kMaxShifts = 32.0;
-/// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
-/// billions.
+/// Solves of a study, without tightened and rounded ones. More take days, and a wrong list may give billions.
 constexpr double kMaxSolves = 10'000.0;
 
 std::vector<Index> read_cells(SceneReader& reader) {
@@ -43,7 +42,7 @@ std::vector<Variation> read_variations(SceneReader& reader) {
     if (variations.back().values.empty()) reader.fail(at + "values", "(missing)", "a list of values");
     for (const char* own : {"grid.cells", "solver.tolerance"}) {
       if (variations.back().key == own) {
-        reader.fail(at + "key", own, "a key of the scene other than those that cells and tolerances give");
+        reader.fail(at + "key", own, "a key of the scene, except grid.cells and solver.tolerance");
       }
     }
   }
@@ -65,7 +64,7 @@ void require_finite(const std::filesystem::path& file, const Study& study) {
   for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
   if (solves > kMaxSolves) {
     throw solver::InputError(file.string(),
-                             fmt::format("asks for {:g} solves; allowed: at most {:g}, cells times "
+                             fmt::format("has {:g} solves; allowed: at most {:g}, cells times "
                                          "shifts times tolerances times the values of each [[vary]]",
                                          solves, kMaxSolves));
   }
@@ -76,22 +75,23 @@ void require_finite(const std::filesystem::path& file, const Study& study) {
 const solver::SettingKeys& study_keys() {
   using namespace solver;
   static const SettingKeys keys{
-      {"name", KeyType::text, "", "the file's name", {}, "Heads what is printed."},
+      {"name", KeyType::text, "", "the file's name", {}, "Title of the output."},
       {"scene", KeyType::file, "", kRequired, kAny, "Scene file (TOML), relative to the study's folder."},
       {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
       {"cells", KeyType::numbers, "", "the scene's own grid", whole(kMinStudyCells, kMaxStudyCells),
-       "Cells along the longer side, a mesh each."},
+       "Cells along the longer side of each mesh."},
       {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), whole(1.0, kMaxShifts),
-       "Grids of each mesh, whose cells lie differently under the edges: mean and spread in place of noise."},
+       "Grids of each mesh, with other positions of the cells under the edges: they give a mean and a "
+       "spread."},
       {"tolerances", KeyType::numbers, "", "the scene's own", kPositive,
        "Tolerances to which each mesh is solved."},
       {"vary", KeyType::tables, "", "none", kAny,
        "Tables `[[vary]]`: every combination is a series of its own."},
       {"vary.key", KeyType::text, "", kRequired, kAny,
-       "The key of the scene that varies; not grid.cells, not solver.tolerance."},
-      {"vary.values", KeyType::values, "", kRequired, kAny, "The values that it takes."},
+       "The key of the scene that varies, except grid.cells and solver.tolerance."},
+      {"vary.values", KeyType::values, "", kRequired, kAny, "The values of the key."},
       {"quantities", KeyType::texts, "", "all that have an expected order", kAny,
-       "Paths into a result, as of a gate's quantity."}};
+       "Paths into a result, as in `quantity` of a gate."}};
   return keys;
 }
 

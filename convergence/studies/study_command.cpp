@@ -79,7 +79,8 @@ RunCommand add_study_command(CLI::App& app) {
   request->runs.add_shards_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
-      "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
+      "Finished solves are kept: an interrupted command continues when it is repeated.\nExit code 0: done; "
+      "1: "
       "some solve did not converge or failed, and is marked; 2: bad input.");
   return running(command, request, run_study_request);
 }

@@ -121,7 +121,7 @@ std::vector<Chosen> choose_quantities(const Study& study, const Json& result) {
   }
   if (exact == result.end()) return chosen;
   for (const ErrorQuantity& error : error_quantities()) choose(error.path, true);
-  // The ratio follows from the radius, unless the contact has an exact answer for the ratio only.
+  // The stick ratio follows from the radius, unless only the ratio has an exact answer.
   if (std::isfinite(number_at(result, "stick_radius_error")))
     std::erase_if(chosen, [](const Chosen& each) { return each.path == "stick_ratio_error"; });
   return chosen;

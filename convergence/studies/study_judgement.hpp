@@ -16,7 +16,7 @@ struct MeshResults {
 };
 
 /// Orders, limits and budgets of a series.
-///   1. Chooses the quantities: those of the study, or all errors that the result has, and the values that
+///   1. Chooses the quantities: from the study file, or all errors that the result has, and the values that
 ///   the
 ///      exact answer does not have.
 ///   2. Takes mean and spread of each quantity on each mesh, and the budget of its error.

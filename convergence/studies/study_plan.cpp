@@ -15,10 +15,10 @@ namespace {
 
 using solver::Index;
 
-/// Rounding is looked at on the finest mesh up to this, where it costs little.
+/// Rounding is measured on the finest mesh with at most this many cells a side, where it costs little.
 constexpr Index kRoundingCells = 128;
-/// Cells by which the grids of one mesh grow in all: the contact's edge then takes places over two cells'
-/// width.
+/// Cells by which the grids of one mesh grow in all: the contact's edge then moves over the width of two
+/// cells.
 constexpr double kShiftCells = 2.0;
 
 /// The grids of a mesh with `across` cells along its longer side, in the shape of the scene's own.
@@ -29,7 +29,7 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
   if (across) {
     if (solver::find_height_map(scene.surfaces) != nullptr || !scene.friction.map.empty()) {
       throw solver::InputError(study.source.string(), "cells", std::to_string(*across),
-                               "left out: the grid is that of the scene's height map or friction map");
+                               "no cells: the scene's height map or friction map gives the grid");
     }
     own.push_back(cells_override(scene, *across));
     scene = solver::read_scene(study.scene, own);

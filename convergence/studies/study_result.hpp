@@ -41,7 +41,7 @@ struct MeshRow {
   Number seconds = {};
 };
 
-/// A quantity on one mesh. grids: those that converged.
+/// A quantity on one mesh. grids: number of grids that converged.
 struct MeshQuantity {
   int grids = 0;
   Number mean = {};

@@ -99,7 +99,7 @@ def published(name, comparison, text, value, ours, own=1e-9, **why):
 
 
 def small_paper():
-    """What is shown of the paper's validation."""
+    """A made validation of the paper."""
     loads = (0.2, 0.5, 0.9)
     return {
         "contact": {"radius": RADIUS, "peak_pressure": PEAK},
@@ -202,7 +202,7 @@ def write_fields(path, q1_shift=0.02):
 
 
 def write_answer(path):
-    """Two cells that stick beside one that slips."""
+    """Two cells that stick and one that slips."""
     with h5py.File(path, "w") as file:
         for name, values in {"x1": [0.0, 1.0, 2.0], "x2": [0.0, 0.0, 0.0], "stick": [1.0, 1.0, 0.0], "pressure": [2.0, 3.0, 1.0],
                              "q1": [1.0, 1.0, 0.5], "q2": [0.0, 0.5, 0.5], "slip1": [1e-9, 0.0, 3.0], "slip2": [0.0, 0.0, 4.0]}.items():
@@ -220,8 +220,8 @@ def write_data(page_folder, page):
 
 
 def run_render(*folders, output=None, save=style.save):
-    """Draws the page of each folder, and an index of several in `output`: exit code, and what it says; `save` writes the figures.
-    A warning is an error, but for what matplotlib will do otherwise one day."""
+    """Draws the page of each folder, and an index of several in `output`: exit code and output; `save` writes the figures.
+    A warning is an error, except for announced changes of matplotlib."""
     with redirect_stderr(io.StringIO()) as errors, patch.object(style, "save", save), warnings.catch_warnings():
         for kind in (UserWarning, RuntimeWarning, DeprecationWarning):
             warnings.simplefilter("error", kind)

@@ -1,6 +1,6 @@
-"""The page in a browser: loads alone and in silence, sorts, fits every screen, can be read by everybody.
+"""The page in a browser: it loads without a network and without messages, sorts, fits every screen, and is accessible.
 
-Nothing here depends on the page's words."""
+The tests do not depend on the page's words."""
 
 import json
 import re
@@ -28,7 +28,7 @@ EMPTY = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 600 300"></svg>'
 
 
 def number(cell):
-    """What a cell says as (kind, unit, value), None where it says no number."""
+    """A cell as (kind, unit, value), None for a cell without a number."""
     if not (found := NUMBER.fullmatch(cell)):
         return None
     value = float(found["mantissa"].translate(SUPERSCRIPTS))
@@ -73,7 +73,7 @@ class Page(unittest.TestCase):
         self.browser.media()
 
     def tearDown(self):
-        """Whatever is done with the page, it neither complains nor asks for anything."""
+        """The page neither reports an error nor loads anything during its use."""
         type(self).asked += self.browser.requests()
         self.assertEqual(self.browser.complaints(), [])
         self.assertEqual([each for each in self.asked if not each.startswith("data:")], [self.file.resolve().as_uri()])
@@ -121,7 +121,7 @@ class Page(unittest.TestCase):
             self.assertEqual(self.browser.evaluate(f"{folds}.map((each) => each.open)"), expected)
 
     def expect_sorted(self, before, after):
-        """The column's header alone says how it is sorted; rows stay whole; what has no value comes last."""
+        """Only the header of the column shows its order; rows stay whole; cells without a value come last."""
         direction = after["sorts"][after["column"]]
         self.assertIn(direction, ("ascending", "descending"))
         self.assertEqual([each for each in after["sorts"] if each not in (None, "none")], [direction])

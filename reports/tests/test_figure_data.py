@@ -1,4 +1,4 @@
-"""What a figure shows, as CSV and as words on its points."""
+"""The data of a figure as CSV and as words on its points."""
 
 import csv
 import re

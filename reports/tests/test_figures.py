@@ -16,7 +16,7 @@ from wording import sci
 
 
 def history(*moments, force=1e-16):
-    """A page with the steps of a torsion whose forces are those of rounding."""
+    """A page with the steps of a torsion whose forces are rounding errors."""
     steps = [{"twist_angle": m + m**3, "moment": m, "displacement": [0.0, 1e-22 * k], "force": [force * k, 0.0]}
              for k, m in enumerate(moments)]
     return {"answer": {"steps": steps, "contact_radius": 1e-3, "moment_limit": 1.0, "friction_force": 100.0,

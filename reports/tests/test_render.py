@@ -163,7 +163,7 @@ class WholePage(unittest.TestCase):
         return [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", self.part(place))]
 
     def part(self, place):
-        """What stands from a heading to the next one."""
+        """The text from a heading to the next one."""
         return re.split("<h[23]", self.page[self.page.index(f'<h3 id="{place}"') + 3:])[0]
 
     def test_each_table_stands_under_its_heading(self):
@@ -294,7 +294,7 @@ class AsAProgram(Folder):
 
 class PageWithGaps(Folder):
     def draw(self, page, *names, save=save_nothing):
-        """What the page says, drawn with the lead figure and those named alone, and what the program says."""
+        """The text of the page, drawn only with the lead figure and the named ones, and the program's output."""
         write_data(self.folder, page)
         with only(*names):
             exit_code, errors = run_render(self.folder, save=save)

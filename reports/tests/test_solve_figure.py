@@ -65,7 +65,7 @@ class Figure(Folder):
         figure.draw_without_rendering()
 
     def run_script(self, name="figure.svg"):
-        """Exit code, and what it says."""
+        """Exit code and output."""
         with redirect_stderr(io.StringIO()) as errors:
             exit_code = solve_figure.main(self.arguments(name))
         return exit_code, errors.getvalue()

@@ -12,7 +12,7 @@ import tables  # noqa: E402
 
 
 def beside_heads(table, row=0):
-    """What stands under each head, in order."""
+    """The cells under each head, in order."""
     assert len(table.head) == len(table.body[row]), table.head
     return list(zip(table.head, map(str, table.body[row])))
 

@@ -38,7 +38,7 @@ Family drawn_family(const TimeLaw& law, double scatter, int repetitions, std::mt
   return family;
 }
 
-/// The part of so many seeded trials that hold.
+/// The part of the seeded trials that hold.
 double part_of(int trials, const std::function<bool()>& holds) {
   int count = 0;
   for (int i = 0; i < trials; ++i) count += holds() ? 1 : 0;

@@ -63,8 +63,8 @@ TEST(Limit, LowOrdersFallBackOnFixedTerms) {
   EXPECT_TRUE(std::isnan(three.order.constant));
 }
 
-/// Both error terms are among the fallbacks: exact for what they hold. Its logarithmic slope is steeper at
-/// the fine end than at the coarse end, like that of an order below 0.5.
+/// Both error terms are among the fallbacks, which are exact for them. The logarithmic slope of the errors is
+/// steeper at the fine end than at the coarse end, as for an order below 0.5.
 TEST(Limit, BothTermsTogetherAreFitted) {
   const Meshes meshes = made(kHalves, [](double h) { return kLimit + h - 0.55 * h * h; });
   const Limit found = least_squares_limit(meshes, 1.0);
@@ -74,9 +74,9 @@ TEST(Limit, BothTermsTogetherAreFitted) {
   EXPECT_NEAR(found.uncertainty, 3.0 * error, 100.0 * kRounding);
 }
 
-/// Numbers of an independent evaluation of the method (numpy's lstsq, the order by dense looks at a range of
-/// orders): the fit weighted by 1/h has the smaller deviation and an order of 1.006 with a standard error of
-/// 0.0832, whose Student's quantile of two degrees of freedom is 4.3027.
+/// Numbers of an independent evaluation of the method (numpy's lstsq, the order by a dense
+/// scan of a range): the fit weighted by 1/h has the smaller deviation and an order of 1.006 with a standard
+/// error of 0.0832, whose Student's quantile of two degrees of freedom is 4.3027.
 TEST(Limit, OfScatteredValuesIsTheMethods) {
   const Limit found = least_squares_limit(made({1.0, 0.52, 0.23, 0.131, 0.06}), 1.0);
   constexpr double independent = 1e-6;  // of the order there
@@ -134,7 +134,7 @@ TEST(Limit, NoiseIsAFloor) {
   meshes.push_back({9e-4, meshes.back().value - 2 * noise, 0.0, 1, noise});
   EXPECT_EQ(least_squares_limit(meshes, 2.0).order.verdict, floor);
   EXPECT_EQ(richardson_limit(meshes, 2.0).order.verdict, floor);
-  for (const std::size_t noisy : {2U, 3U}) {  // either of the finest two alone
+  for (const std::size_t noisy : {2U, 3U}) {  // one of the finest two
     Meshes one = values(2.0, {1.0, 0.5, 0.25, 0.125});
     one[noisy].noise = 0.2 * std::abs(one[3].value - one[2].value);
     EXPECT_EQ(least_squares_limit(one, 2.0).order.verdict, floor) << noisy;
@@ -221,7 +221,7 @@ TEST(Limit, LiesWithinItsUncertainty) {
   }
 }
 
-/// C1 h + C2 h^2 read as one power leads beside the limit, by less than it says.
+/// C1 h + C2 h^2 fitted by one power misses the limit by less than the stated uncertainty.
 TEST(Limit, OfTwoTermsLiesWithinItsUncertainty) {
   for (const double finest : {0.25, 0.01}) {
     const std::vector<double> sizes{8 * finest, 4 * finest, 2 * finest, finest};

@@ -15,7 +15,7 @@ using enum OrderVerdict;
 
 OrderVerdict verdict(const Meshes& errors, double expected) { return fit_order(errors, expected).verdict; }
 
-/// Means over so many grids each, with a spread that is a part of the error.
+/// Means over `grids` grids each, with a spread that is a part of the error.
 Meshes spread_over(Meshes errors, int grids, double part) {
   for (MeshSample& error : errors) error.grids = grids, error.spread = part * error.value;
   return errors;
@@ -71,7 +71,7 @@ TEST(Order, KnownSpreadGivesTheInterval) {
   EXPECT_EQ(found.verdict, asymptotic);
 }
 
-/// What is not known is not zero: such a mesh says nothing of the order.
+/// An unknown noise is not zero: a mesh without a noise is not fitted.
 TEST(Order, AMeshWithoutANoiseTakesNoPart) {
   Meshes errors = power(1.0);
   errors[1].value *= 3.0;

@@ -126,8 +126,8 @@ TEST(Scenes, HaveTheExactAnswersThatTheoryHas) {
   }
 }
 
-/// Each error contains that of the steps' length, as the result states it; a number whose part is not known
-/// has no error. No solve is known better than the reference that it is compared with.
+/// Each error contains the stated error by the length of the steps; a number for which this is unknown has no
+/// error. The error of a solve is at least the uncertainty of the reference.
 TEST_F(ScenePage, CountsTheLengthOfSteps) {
   const Json made = page(file("dissimilar"), {{"twist_angle", 1e-2}});
   const double stated =

@@ -145,10 +145,10 @@ StudyResult study_with(OrderVerdict verdict, double low, double high, double exp
 
 Shown order_of(const StudyResult& study) { return judge_order(study, "twist_angle", "twist").shown; }
 
-/// An order counts where its interval lies no lower than expected; one that could be anything shows nothing.
+/// An order holds if its interval is not below the expected one; a wide interval is open.
 TEST(Order, CountsOnlyWhereItIsShown) {
   EXPECT_EQ(order_of(study_with(OrderVerdict::asymptotic, 1.6, 2.5)), Shown::holds)
-      << "agrees with what is expected";
+      << "agrees with the expected order";
   EXPECT_EQ(order_of(study_with(OrderVerdict::superconvergent, 2.4, 2.6)), Shown::holds);
   EXPECT_EQ(order_of(study_with(OrderVerdict::preasymptotic, 1.2, 1.6)), Shown::fails);
   EXPECT_EQ(order_of(study_with(OrderVerdict::preasymptotic, 0.5, 3.0)), Shown::open);
@@ -171,7 +171,7 @@ std::vector<PageNumber> numbers_with(double mesh, double path) {
            .path = number_or(path, "so")}};
 }
 
-/// Mesh and steps count together; an unknown error is never within a wanted one.
+/// The errors by mesh and steps are added; an unknown error exceeds every bound.
 TEST(Accuracy, IsThatOfMeshAndSteps) {
   const auto wanted = [](const std::vector<PageNumber>& numbers, double error) {
     return judge_wanted({"twist_angle", error}, numbers);

@@ -108,8 +108,8 @@ TEST_F(Judged, SpreadIsOverTheGridsThatAreThere) {
   EXPECT_NEAR(number(json["meshes"][2], "spread"), 1e-5 * std::sqrt(2.0), 1e-18);
 }
 
-/// Its first grid is what a mesh's budget is determined from: without it the noise is not known, which is not
-/// zero, and the mesh takes no part in the order.
+/// The budget of a mesh is determined from its first grid: without it the noise is unknown, which is not
+/// zero, and the mesh is not fitted.
 TEST_F(Judged, WithoutItsFirstGridAMeshHasNoNoise) {
   results_[1].grids[0] = kKilled;
   const Json json = judged();

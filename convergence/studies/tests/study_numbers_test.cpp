@@ -28,8 +28,8 @@ struct MadeStudy {
 
   std::size_t meshes() const { return series.meshes.size(); }
 
-  /// A power of a cell's size over that of the coarsest mesh: of the first grid, and of the grids in the
-  /// mean.
+  /// A power of (cell size / cell size of the coarsest mesh), for the first grid and for the mean of the
+  /// grids.
   double of_first(std::size_t mesh, double power = 2.0) const {
     return std::pow(series.meshes[mesh].grids[0].size / series.meshes[0].grids[0].size, power);
   }

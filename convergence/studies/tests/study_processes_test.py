@@ -1,5 +1,5 @@
 """study_processes_test.py PROGRAM SCENES: slipstick study as users run it: interrupted, continued, killed, and with bad
-input. Its processes are found by what only Linux shows."""
+input. Its processes are found in /proc, on Linux only."""
 
 import json
 import os
@@ -67,7 +67,7 @@ class Study(unittest.TestCase):
         return sorted((self.folder / "points").glob("*.json"))
 
     def processes(self):
-        """Those that run, the study's own and its workers'; what has ended and is not waited for shows nothing."""
+        """The running processes of the study and its workers; zombies have no command line."""
         found = []
         for folder in Path("/proc").glob("[0-9]*"):
             try:
@@ -78,7 +78,7 @@ class Study(unittest.TestCase):
         return found
 
     def test_goes_on_after_an_interrupt(self):
-        """What is left is whole, and the same command goes on from it to the same result."""
+        """The finished results are complete, and the same command continues to the same result."""
         first, _, _ = self.start_held("first", 3)
         os.killpg(first.pid, signal.SIGINT)
         self.assertEqual(first.wait(), 2)
@@ -99,10 +99,10 @@ class Study(unittest.TestCase):
 
     @ON_LINUX
     def test_a_killed_worker_is_named_and_the_others_are_judged(self):
-        """Whichever it is: the study says so, in its text and its result, and leaves with 1. What is not known is null with
-        a reason and not zero."""
+        """The study names any killed worker in its text and its result, and exits with 1. Unknown numbers are null with
+        a reason, not zero."""
         self.write('cells = [32, 48]\nquantities = ["twist_error"]\n')
-        # One at a time, the larger mesh first: the solve itself, to a tighter tolerance, then those of the other.
+        # The workers of the larger mesh first: the solve itself, the tightened one; then the smaller mesh.
         for before in range(6):
             with self.subTest(before=before):
                 shutil.rmtree(self.folder / "points", ignore_errors=True)
@@ -126,7 +126,7 @@ class Study(unittest.TestCase):
 
     @ON_LINUX
     def test_workers_end_with_their_parent(self):
-        """However it ends, no worker goes on: none is left, and none has finished."""
+        """No worker continues after the end of its parent, and none has finished."""
         self.write('cells = [256, 288]\nset = { "solver.operator" = "direct" }\n')  # minutes each
         for number in (signal.SIGKILL, signal.SIGHUP, signal.SIGTERM, signal.SIGINT):
             with self.subTest(number):
