@@ -171,7 +171,7 @@ std::optional<Cause> lost_rows(const Examination& e, double allowed) {
 /// Whether a pressure that is infinite somewhere has the exact values at cell centres, which miss its load.
 bool is_sampled_singularity(const Examination& e) {
   constexpr double kSampled = 1e-3;  // relative error in L1 of exact values at cell centres, rounded
-  return e.exact.oracle && !std::isfinite(e.exact.oracle->peak_pressure) &&
+  return e.exact.oracle && !std::isfinite(e.exact.oracle->normal.peak_pressure) &&
          pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m())
                  .l1 <= kSampled;
 }

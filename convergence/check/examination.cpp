@@ -77,8 +77,8 @@ std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const GivenContact&
   const double nearest = 0.35 * std::min(grid.h1, grid.h2) * contact.length_unit;
   ArrayXd pressure(grid.cells());
   for (Index cell = 0; cell < grid.cells(); ++cell) {
-    const double radius = pressed.radius(x1[cell] * contact.length_unit - pressed.centre[0],
-                                         x2[cell] * contact.length_unit - pressed.centre[1]);
+    const double radius = pressed.radius(x1[cell] * contact.length_unit - pressed.place.centre[0],
+                                         x2[cell] * contact.length_unit - pressed.place.centre[1]);
     pressure[cell] = pressed.pressure(std::max(radius, nearest)) / contact.stress_unit;
   }
   const double carried = pressure.sum() * grid.cell_area() * contact.force_unit();
@@ -340,7 +340,7 @@ void require_judgeable(const solver::Scene& scene) {
 /// The same answer with positions about `centre`.
 OracleAnswer about(OracleAnswer exact, const std::array<double, 2>& centre) {
   if (!exact.oracle) return exact;
-  for (std::size_t k = 0; k < 2; ++k) exact.oracle->centre[k] -= centre[k];
+  for (std::size_t k = 0; k < 2; ++k) exact.oracle->place.centre[k] -= centre[k];
   return exact;
 }
 

@@ -73,11 +73,11 @@ LawContact law_contact(const solver::Scene& scene) {
   }
   const bool is_sphere = scene.surfaces.front().shape == solver::Shape::sphere;
   return {.name = scene.name,
-          .profile = answer.oracle->bound,
+          .profile = answer.oracle->friction.bound,
           .units = LawUnits{
               .friction = scene.friction.is_coulomb()
                               ? scene.friction.coefficient
-                              : answer.oracle->friction_force / *unloaded.steps.front().normal,
+                              : answer.oracle->friction.force / *unloaded.steps.front().normal,
               .normal_load = *unloaded.steps.front().normal,
               .contact_radius = answer.oracle->contact_radius,
               .shear_modulus = combined_shear_modulus(scene),

@@ -60,8 +60,8 @@ template <typename Size>
 std::array<double, 2> shear_at(const Oracle& oracle, double y1, double y2, Size&& size_at) {
   const double radius = std::hypot(y1, y2);
   const double size = size_at(radius);
-  if (oracle.direction != std::array<double, 2>{}) {
-    return {size * oracle.direction[0], size * oracle.direction[1]};
+  if (oracle.place.direction != std::array<double, 2>{}) {
+    return {size * oracle.place.direction[0], size * oracle.place.direction[1]};
   }
   if (radius == 0.0) return {0.0, 0.0};  // the axis carries no traction
   return {-size * (y2 / radius), size * (y1 / radius)};
@@ -114,10 +114,10 @@ class Images {
   Images(const Oracle& oracle, const solver::Grid& grid)
       : n1_(grid.n1),
         n2_(grid.n2),
-        mirrored_(oracle.centre == std::array<double, 2>{} &&
-                  (oracle.axis_ratio == 1.0 || oracle.angle == 0.0) && !grid.quadrant),
-        diagonal_(mirrored_ && oracle.axis_ratio == 1.0 && grid.n1 == grid.n2 && grid.h1 == grid.h2),
-        turns_(oracle.direction == std::array<double, 2>{}) {}
+        mirrored_(oracle.place.centre == std::array<double, 2>{} &&
+                  (oracle.place.axis_ratio == 1.0 || oracle.place.angle == 0.0) && !grid.quadrant),
+        diagonal_(mirrored_ && oracle.place.axis_ratio == 1.0 && grid.n1 == grid.n2 && grid.h1 == grid.h2),
+        turns_(oracle.place.direction == std::array<double, 2>{}) {}
 
   Index rows() const { return mirrored_ ? (n1_ + 1) / 2 : n1_; }
   Index columns() const { return mirrored_ ? (n2_ + 1) / 2 : n2_; }
@@ -202,8 +202,8 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
       const bool near_edge =
           is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius);
       if (near_edge) {
-        mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0], grid.x2(j) - oracle.centre[1],
-                              beside_edges);
+        mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.place.centre[0],
+                              grid.x2(j) - oracle.place.centre[1], beside_edges);
       }
       Norms& region = slips && is_within(width, oracle.stick_radius) ? sum.stick_edge
                       : is_within(width, oracle.contact_radius)      ? sum.contact_edge
@@ -278,8 +278,8 @@ ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
   ArrayXd sizes(images.rows() * images.columns());  // of the shear tractions
   for (Index i = 0; i < images.rows(); ++i) {
     for (Index j = 0; j < images.columns(); ++j) {
-      const double y1 = grid.x1(i) - oracle.centre[0];
-      const double y2 = grid.x2(j) - oracle.centre[1];
+      const double y1 = grid.x1(i) - oracle.place.centre[0];
+      const double y2 = grid.x2(j) - oracle.place.centre[1];
       const bool found = images.diagonal() && j < i;
       const Index twin = j * grid.n2 + i;
       const double radius = found ? exact.radius[twin] : oracle.radius(y1, y2);
@@ -316,7 +316,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
   return {
       .twist = relative_error(solution.twist_angle, oracle.twist_angle),
       .moment = relative_error(solution.moment, oracle.moment),
-      .moment_limit = relative_error(solution.moment_limit, oracle.moment_limit),
+      .moment_limit = relative_error(solution.moment_limit, oracle.friction.moment_limit),
       .stick_radius = relative_error(solution.stick_radius, oracle.stick_radius),
       .stick_ratio =
           relative_error(solution.stick_radius / solution.contact_radius, oracle.state.stick_ratio),
@@ -324,7 +324,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .dissipated = relative_error(solution.dissipated, oracle.dissipated),
       .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
       .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
-      .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
+      .peak_pressure = relative_error(solution.peak_pressure, oracle.normal.peak_pressure),
       .traction =
           fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
       .sharpened = fields && oracle.shear ? sharpened_error(sharp.cells, solution, exact) : kUnknownField,

@@ -81,20 +81,20 @@ class Indentation {
   Oracle pressed(double load) const {
     const auto [contact, profile, uncertainty] = pressed_shape(load);
     Oracle oracle{};
-    oracle.profile = profile;
-    oracle.centre = surface_.at;
+    oracle.normal.profile = profile;
+    oracle.place.centre = surface_.at;
     oracle.contact_radius = contact.contact_radius;
-    oracle.reference_pressure = contact.reference_pressure;
-    oracle.peak_pressure = contact.reference_pressure * peak_of(*profile);
-    oracle.approach = contact.approach;
+    oracle.normal.reference_pressure = contact.reference_pressure;
+    oracle.normal.peak_pressure = contact.reference_pressure * peak_of(*profile);
+    oracle.normal.approach = contact.approach;
     // exact_history() has found that there is one.
     const FrictionBound bound = find_friction_bound(friction_, profile, contact.reference_pressure).value();
     const double a = contact.contact_radius;
-    oracle.bound = bound.profile;
-    oracle.reference_bound = bound.reference;
-    oracle.friction_force = friction_.is_coulomb() ? friction_.coefficient * load
+    oracle.friction.bound = bound.profile;
+    oracle.friction.reference_bound = bound.reference;
+    oracle.friction.force = friction_.is_coulomb() ? friction_.coefficient * load
                                                    : bound.profile->load() * bound.reference * a * a;
-    oracle.moment_limit = bound.profile->moment_limit() * oracle.friction_force * a;
+    oracle.friction.moment_limit = bound.profile->moment_limit() * oracle.friction.force * a;
     oracle.stick_radius = contact.contact_radius;
     oracle.state.stick_ratio = 1.0;
     oracle.relative_uncertainty = uncertainty;
@@ -127,10 +127,10 @@ class TorsionHistory final : public ExactHistory {
  public:
   TorsionHistory(const Indentation& indentation, double normal_load)
       : contact_(indentation.pressed(normal_load)),
-        units_{.moment = contact_.friction_force * contact_.contact_radius,
-               .twist = contact_.friction_force /
+        units_{.moment = contact_.friction.force * contact_.contact_radius,
+               .twist = contact_.friction.force /
                         (indentation.pair().shear * contact_.contact_radius * contact_.contact_radius)},
-        history_(*contact_.bound) {}
+        history_(*contact_.friction.bound) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {
@@ -140,14 +140,14 @@ class TorsionHistory final : public ExactHistory {
       return {std::nullopt,
               fmt::format("beyond the range of the exact solution: {} (M_lim = {:.17g} N m, mu W/(G a^2) = "
                           "{:.6g} rad)",
-                          error.what(), contact_.moment_limit, units_.twist),
+                          error.what(), contact_.friction.moment_limit, units_.twist),
               true};
     }
   }
 
   double ratio_of(const solver::TorsionLoad& load) const {
     const auto ratio = solver::value_if<solver::MomentRatio>(load);
-    return ratio ? *ratio : std::get<solver::Moment>(load).value / contact_.moment_limit;
+    return ratio ? *ratio : std::get<solver::Moment>(load).value / contact_.friction.moment_limit;
   }
 
   /// The ratio that turns the contact on to a twist, by bisection: 1 or -1 where none does.
@@ -167,13 +167,13 @@ class TorsionHistory final : public ExactHistory {
     const auto twist = solver::value_if<solver::Twist>(load);
     const double sign = std::copysign(1.0, twist ? *twist : ratio_of(load));
     Oracle oracle = contact_;
-    oracle.state = twist ? analytic::from_twist(std::abs(*twist) / units_.twist, *contact_.bound)
-                         : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.bound);
+    oracle.state = twist ? analytic::from_twist(std::abs(*twist) / units_.twist, *contact_.friction.bound)
+                         : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.friction.bound);
     history_.load_to(sign * oracle.state.moment_ratio);
     dissipated_ = history_.state().dissipated;
     oracle.dissipated = dissipated_ * energy_unit();
-    oracle.shear = [scale = sign * oracle.reference_bound, state = oracle.state, bound = oracle.bound,
-                    a = oracle.contact_radius](double radius) {
+    oracle.shear = [scale = sign * oracle.friction.reference_bound, state = oracle.state,
+                    bound = oracle.friction.bound, a = oracle.contact_radius](double radius) {
       return scale * analytic::traction(state, radius / a, *bound);
     };
     for (double* const value : {&oracle.state.moment, &oracle.state.twist, &oracle.state.moment_ratio}) {
@@ -196,7 +196,7 @@ class TorsionHistory final : public ExactHistory {
                     .tangent_stiffness = state.tangent_stiffness};
     oracle.dissipated = (state.dissipated - dissipated_) * energy_unit();
     dissipated_ = state.dissipated;
-    oracle.shear = [scale = oracle.reference_bound, history = history_, a = oracle.contact_radius](
+    oracle.shear = [scale = oracle.friction.reference_bound, history = history_, a = oracle.contact_radius](
                        double radius) { return scale * history.traction(radius / a); };
     return in_units(oracle);
   }
@@ -253,9 +253,9 @@ class ForceHistory final : public ExactHistory {
     oracle.state.stick_ratio = state.stick_radius / state.contact_radius;
     oracle.dissipated = (state.dissipated - dissipated_) * unit * length;
     dissipated_ = history_.state().dissipated;
-    oracle.direction = direction_;
-    oracle.shear = [scale = indentation_.friction() * reference_.reference_pressure, history = history_,
-                    a](double radius) { return scale * history.traction(radius / a); };
+    oracle.place.direction = direction_;
+    oracle.shear = [scale = indentation_.friction() * reference_.normal.reference_pressure,
+                    history = history_, a](double radius) { return scale * history.traction(radius / a); };
     return {oracle, ""};
   }
 
@@ -299,8 +299,9 @@ class FrictionalIndentation final : public ExactHistory {
     oracle.dissipated = unknown;
     if (full_) {  // shear has its part in the pressure
       oracle.relative_uncertainty = kSpenceUncertainty;
-      oracle.contact_radius = oracle.stick_radius = oracle.approach = oracle.peak_pressure = unknown;
-      oracle.reference_pressure = oracle.moment_limit = unknown;
+      oracle.contact_radius = oracle.stick_radius = oracle.normal.approach = oracle.normal.peak_pressure =
+          unknown;
+      oracle.normal.reference_pressure = oracle.friction.moment_limit = unknown;
     }
     return {oracle, ""};
   }
@@ -321,13 +322,13 @@ class PressedEllipse final : public ExactHistory {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     constexpr std::array unknown_pair{unknown, unknown};
     Oracle oracle = pressed(*step.normal);
-    oracle.moment = moment_of(step.torsion, oracle.moment_limit);
+    oracle.moment = moment_of(step.torsion, oracle.friction.moment_limit);
     oracle.twist_angle = solver::value_if<solver::Twist>(step.torsion).value_or(unknown);
     oracle.force = step.displacement ? unknown_pair : step.force;
     oracle.displacement = step.displacement.value_or(unknown_pair);
     oracle.stick_radius = oracle.dissipated = unknown;
-    oracle.state = {.moment_ratio = oracle.moment / oracle.moment_limit,
-                    .moment_deficit = 1.0 - std::abs(oracle.moment) / oracle.moment_limit,
+    oracle.state = {.moment_ratio = oracle.moment / oracle.friction.moment_limit,
+                    .moment_deficit = 1.0 - std::abs(oracle.moment) / oracle.friction.moment_limit,
                     .stick_ratio = unknown,
                     .stick_complement = unknown,
                     .twist = oracle.twist_angle * pair_.shear * oracle.contact_radius *
@@ -344,18 +345,18 @@ class PressedEllipse final : public ExactHistory {
     const analytic::HertzEllipse contact =
         analytic::hertz_ellipse(load, surface_.radius_1, surface_.radius_2, pair_.effective);
     Oracle oracle{};
-    oracle.profile = analytic::find_profile("hertz").profile;
-    oracle.centre = surface_.at;
-    oracle.axis_ratio = contact.semi_axis_1 / contact.semi_axis_2;
-    oracle.angle = surface_.angle;
+    oracle.normal.profile = analytic::find_profile("hertz").profile;
+    oracle.place.centre = surface_.at;
+    oracle.place.axis_ratio = contact.semi_axis_1 / contact.semi_axis_2;
+    oracle.place.angle = surface_.angle;
     oracle.contact_radius = std::sqrt(contact.semi_axis_1 * contact.semi_axis_2);
-    oracle.reference_pressure = contact.peak_pressure;
-    oracle.peak_pressure = contact.peak_pressure;
-    oracle.approach = contact.approach;
-    oracle.bound = oracle.profile;
-    oracle.reference_bound = friction_ * contact.peak_pressure;
-    oracle.friction_force = friction_ * load;
-    oracle.moment_limit = oracle.friction_force * contact.friction_arm;
+    oracle.normal.reference_pressure = contact.peak_pressure;
+    oracle.normal.peak_pressure = contact.peak_pressure;
+    oracle.normal.approach = contact.approach;
+    oracle.friction.bound = oracle.normal.profile;
+    oracle.friction.reference_bound = friction_ * contact.peak_pressure;
+    oracle.friction.force = friction_ * load;
+    oracle.friction.moment_limit = oracle.friction.force * contact.friction_arm;
     oracle.relative_uncertainty = kUncertainty;
     return oracle;
   }

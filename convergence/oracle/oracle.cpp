@@ -122,24 +122,24 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
 }  // namespace
 
 double Oracle::radius(double y1, double y2) const {
-  if (axis_ratio == 1.0) return std::hypot(y1, y2);
-  const double along = std::cos(angle) * y1 + std::sin(angle) * y2;
-  const double across = std::cos(angle) * y2 - std::sin(angle) * y1;
-  return std::sqrt(along * along / axis_ratio + across * across * axis_ratio);
+  if (place.axis_ratio == 1.0) return std::hypot(y1, y2);
+  const double along = std::cos(place.angle) * y1 + std::sin(place.angle) * y2;
+  const double across = std::cos(place.angle) * y2 - std::sin(place.angle) * y1;
+  return std::sqrt(along * along / place.axis_ratio + across * across * place.axis_ratio);
 }
 
 double Oracle::longer_semi_axis() const {
-  return contact_radius * std::sqrt(std::max(axis_ratio, 1.0 / axis_ratio));
+  return contact_radius * std::sqrt(std::max(place.axis_ratio, 1.0 / place.axis_ratio));
 }
 
 double Oracle::shorter_semi_axis() const {
-  return contact_radius * std::sqrt(std::min(axis_ratio, 1.0 / axis_ratio));
+  return contact_radius * std::sqrt(std::min(place.axis_ratio, 1.0 / place.axis_ratio));
 }
 
 double Oracle::pressure(double radius) const {
   const double ratio = radius / contact_radius;
   if (std::isnan(ratio)) return ratio;
-  return ratio < 1.0 ? reference_pressure * profile->pressure(ratio) : 0.0;
+  return ratio < 1.0 ? normal.reference_pressure * normal.profile->pressure(ratio) : 0.0;
 }
 
 double Oracle::traction(double radius) const {

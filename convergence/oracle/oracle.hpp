@@ -12,6 +12,29 @@
 
 namespace slipstick::convergence {
 
+struct ContactPlace {
+  std::array<double, 2> centre;       ///< m, of the axis
+  double axis_ratio = 1.0;            ///< of an elliptic contact: its semi-axis at `angle` over the other
+  double angle = 0.0;                 ///< rad, from x1
+  std::array<double, 2> direction{};  ///< of the shear tractions; zero: around the axis
+};
+
+struct NormalContact {
+  std::shared_ptr<const analytic::Profile> profile;
+  double reference_pressure;  ///< Pa, the profile's p0
+  double peak_pressure;       ///< Pa; infinite under a cone and a flat punch
+  double approach;            ///< m
+};
+
+/// The largest shear tractions and loads.
+struct FrictionLimit {
+  /// Profile of the friction bound, over reference_bound; under Coulomb's law the pressure's profile.
+  std::shared_ptr<const analytic::Profile> bound;
+  double reference_bound = 0.0;  ///< Pa: mu p0 under Coulomb's law
+  double force = 0.0;            ///< N, that slides the contact along a line: mu W under Coulomb's law
+  double moment_limit;           ///< N m
+};
+
 /// The exact answer for an axisymmetric scene, in the scene's units (SI): the normal contact of its indenter
 /// (Hertz, Love, Boussinesq, Sneddon, Ciavarella), in torsion about its own axis (Lubkin 1951; Jaeger 1995)
 /// or under a tangential force (Cattaneo 1938, Mindlin 1949; exact where nu = 0), or pressed with friction
@@ -19,32 +42,22 @@ namespace slipstick::convergence {
 /// contact (Hertz 1882), its limit moment, and the loads and motions that the scene imposes. Unknown numbers
 /// are NaN.
 struct Oracle {
-  std::shared_ptr<const analytic::Profile> profile;
-  /// Profile of the friction bound, over reference_bound; under Coulomb's law the pressure's profile.
-  std::shared_ptr<const analytic::Profile> bound;
-  double reference_bound = 0.0;   ///< Pa: mu p0 under Coulomb's law
-  double friction_force = 0.0;    ///< N, that slides the contact along a line: mu W under Coulomb's law
-  std::array<double, 2> centre;   ///< m, of the axis
-  double axis_ratio = 1.0;        ///< of an elliptic contact: its semi-axis at `angle` over the other
-  double angle = 0.0;             ///< rad, from x1
-  double contact_radius;          ///< m; of an ellipse the radius of the circle of equal area
-  double reference_pressure;      ///< Pa, the profile's p0
-  double peak_pressure;           ///< Pa; infinite under a cone and a flat punch
-  double approach;                ///< m
-  double moment_limit;            ///< N m
-  double moment;                  ///< N m
-  double twist_angle;             ///< rad
-  std::array<double, 2> force{};  ///< N
+  ContactPlace place;
+  NormalContact normal;
+  FrictionLimit friction;
+  double contact_radius;                 ///< m; of an ellipse the radius of the circle of equal area
+  double moment;                         ///< N m
+  double twist_angle;                    ///< rad
+  std::array<double, 2> force{};         ///< N
   std::array<double, 2> displacement{};  ///< m
   double stick_radius;                   ///< m; the contact radius where everything sticks
   double dissipated;                     ///< J, in this step
   analytic::TorsionState state;
   double relative_uncertainty;  ///< largest relative difference from the theory's numbers
 
-  /// Shear traction in Pa at a distance from the axis in m: along `direction`, or around the axis where that
-  /// is zero. Empty: not known.
+  /// Shear traction in Pa at a distance from the axis in m: along place.direction, or around the axis where
+  /// that is zero. Empty: not known.
   std::function<double(double radius)> shear;
-  std::array<double, 2> direction{};
 
   /// Why it says nothing of friction but the limit moment; empty where it says more.
   std::string only_normal;

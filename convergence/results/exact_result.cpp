@@ -69,19 +69,19 @@ SolveRecord exact_record(const solver::Scene& scene, const Oracle& oracle, doubl
   SolveRecord record;
   record.status = RunStatus::converged;
   record.name = scene.name;
-  record.problem = {.method = "exact", .profile = oracle.profile->name(), .left_out = omissions(scene)};
+  record.problem = {.method = "exact", .profile = oracle.normal.profile->name(), .left_out = omissions(scene)};
   EndRecord& end = record.end;
   end.contact = {.contact_radius = known(oracle.contact_radius),
                  .stick_radius = known(oracle.stick_radius),
                  .stick_ratio = {oracle.state.stick_ratio},
                  .normal_load = {*scene.steps.back().normal},
-                 .peak_pressure = std::isinf(oracle.peak_pressure) ? Number{.why_missing = "infinite"}
-                                                                   : known(oracle.peak_pressure),
-                 .approach = known(oracle.approach)};
-  end.friction = make_friction(scene.friction, oracle.friction_force);
+                 .peak_pressure = std::isinf(oracle.normal.peak_pressure) ? Number{.why_missing = "infinite"}
+                                                                   : known(oracle.normal.peak_pressure),
+                 .approach = known(oracle.normal.approach)};
+  end.friction = make_friction(scene.friction, oracle.friction.force);
   end.loads = {.twist_angle = {oracle.twist_angle},
                .moment = {oracle.moment},
-               .moment_limit = known(oracle.moment_limit),
+               .moment_limit = known(oracle.friction.moment_limit),
                .moment_ratio = {oracle.state.moment_ratio},
                .twist = {oracle.state.twist},
                .force = {.values = oracle.force},

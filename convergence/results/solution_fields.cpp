@@ -66,7 +66,7 @@ std::vector<ProfilePoint> make_profile(const solver::Solution& solution, const O
   if (!answer.oracle || !answer.oracle->shear) return points;
   const Oracle& oracle = *answer.oracle;
   const ExactFields exact = exact_fields(oracle, solution.grid);
-  const double unit = 1.0 / oracle.reference_bound;
+  const double unit = 1.0 / oracle.friction.reference_bound;
   const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
   const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
   const solver::Grid& grid = solution.grid;

@@ -205,7 +205,7 @@ TEST(LawContact, IsTheScenesInSi) {
   const ContactLaw law =
       make_contact_law(law_contact(example("paper", {"load.normal=500"})), {.limit_loads = 3});
   const OracleAnswer exact = find_oracle(example("paper", {"load.normal=500"}));
-  EXPECT_NEAR(law.limit_moment() / exact.oracle->moment_limit, 1.0, 1e-13);
+  EXPECT_NEAR(law.limit_moment() / exact.oracle->friction.moment_limit, 1.0, 1e-13);
   EXPECT_NEAR(law.law.moment_ratio_at(exact.oracle->twist_angle / law.rotation_unit()), 0.9, 1e-6);
 }
 

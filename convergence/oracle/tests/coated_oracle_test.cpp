@@ -29,10 +29,12 @@ TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
     scene.lower.coating.reset();
     const Oracle plain = *find_oracle(scene).oracle;
     EXPECT_LE(layered.relative_uncertainty, 1e-11) << shape;
-    for (double Oracle::*const number :
-         {&Oracle::contact_radius, &Oracle::approach, &Oracle::moment_limit, &Oracle::moment,
-          &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated})
+    for (double Oracle::*const number : {&Oracle::contact_radius, &Oracle::moment, &Oracle::twist_angle,
+                                         &Oracle::stick_radius, &Oracle::dissipated}) {
       EXPECT_NEAR(layered.*number / plain.*number, 1.0, 1e-11) << shape;
+    }
+    EXPECT_NEAR(layered.normal.approach / plain.normal.approach, 1.0, 1e-11) << shape;
+    EXPECT_NEAR(layered.friction.moment_limit / plain.friction.moment_limit, 1.0, 1e-11) << shape;
     for (const double part : {0.2, 0.5, 0.9}) {
       const double radius = part * plain.contact_radius;
       EXPECT_NEAR(layered.pressure(radius) / plain.pressure(radius), 1.0, 1e-11) << shape;
@@ -68,7 +70,7 @@ TEST(CoatedOracle, CarriesItsLoads) {
   const Oracle oracle = *find_oracle(coated()).oracle;
   const CarriedLoads carried = loads_carried_by(oracle);
   EXPECT_NEAR(carried.load / 1000.0, 1.0, 1e-6);
-  EXPECT_NEAR(carried.moment / (0.5 * oracle.moment_limit), 1.0, 1e-6);
+  EXPECT_NEAR(carried.moment / (0.5 * oracle.friction.moment_limit), 1.0, 1e-6);
 }
 
 /// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells`

@@ -132,7 +132,7 @@ TEST(Comparison, ConeFallsWithTheMesh) {
     EXPECT_LE(fine.errors.traction.at_centres.l1, 2.5e-3) << ratio;
     EXPECT_LE(fine.errors.pressure.l1, coarse.errors.pressure.l1 * std::pow(4.0, -1.4)) << ratio;
     EXPECT_LE(std::abs(fine.errors.stick_radius), 1e-2) << ratio;  // half a cell of 124 across the contact
-    EXPECT_NEAR(fine.solution.approach / find_oracle(body).oracle->approach, 1.0, 2e-5);
+    EXPECT_NEAR(fine.solution.approach / find_oracle(body).oracle->normal.approach, 1.0, 2e-5);
   }
 }
 
@@ -180,7 +180,7 @@ Eigen::Array<double, 6, 1> mean_errors(solver::Scene body, solver::Index across)
     const Errors errors = compare(solution, oracle);
     Eigen::Array<double, 6, 1> found;
     found << errors.pressure.l1, errors.pressure.l2, errors.contact_radius, errors.peak_pressure,
-        errors.moment_limit, solution.approach / oracle.approach - 1.0;
+        errors.moment_limit, solution.approach / oracle.normal.approach - 1.0;
     sum += found.abs();
   }
   return sum / 3.0;

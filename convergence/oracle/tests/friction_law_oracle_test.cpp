@@ -43,7 +43,7 @@ TEST(FrictionLawOracle, TractionsCarryTheMomentWithinTheBound) {
       const OracleAnswer answer = find_oracle(under(law, ratio));
       ASSERT_TRUE(answer.oracle) << answer.reason;
       const Oracle& oracle = *answer.oracle;
-      EXPECT_NEAR(loads_carried_by(oracle).moment / oracle.moment_limit, ratio, 2e-6);
+      EXPECT_NEAR(loads_carried_by(oracle).moment / oracle.friction.moment_limit, ratio, 2e-6);
       for (const double part : {0.01, 0.3, 0.6, 0.9, 0.99}) {
         const double radius = part * oracle.contact_radius;
         const double bound = law.bound(oracle.pressure(radius));
@@ -63,8 +63,9 @@ TEST(FrictionLawOracle, TrescasTwistIsThatOfTheRadiusAlone) {
   const auto scaled = [&](const char* body) {
     const Oracle oracle = find_oracle(under(law, 0.6, body)).oracle.value();
     const double a = oracle.contact_radius;
-    EXPECT_NEAR(oracle.moment_limit / (2.0 * std::numbers::pi / 3.0 * law.shear_strength * a * a * a), 1.0,
-                1e-13);
+    EXPECT_NEAR(
+        oracle.friction.moment_limit / (2.0 * std::numbers::pi / 3.0 * law.shear_strength * a * a * a), 1.0,
+        1e-13);
     return std::pair(oracle.twist_angle, oracle.stick_radius / a);
   };
   const auto [twist, stick] = scaled("paper");

@@ -33,8 +33,8 @@ TEST(Oracle, PaperCase) {
     const OracleAnswer answer = find_oracle(paper({c.load}));
     ASSERT_TRUE(answer.oracle) << answer.reason;
     EXPECT_NEAR(answer.oracle->contact_radius / kContactRadius, 1.0, kOracleTolerance);
-    EXPECT_NEAR(answer.oracle->peak_pressure / kPeakPressure, 1.0, kOracleTolerance);
-    EXPECT_NEAR(answer.oracle->moment_limit / kMomentLimit, 1.0, kOracleTolerance);
+    EXPECT_NEAR(answer.oracle->normal.peak_pressure / kPeakPressure, 1.0, kOracleTolerance);
+    EXPECT_NEAR(answer.oracle->friction.moment_limit / kMomentLimit, 1.0, kOracleTolerance);
     EXPECT_NEAR(answer.oracle->state.stick_ratio / c.stick_ratio, 1.0, kOracleTolerance) << c.load;
     EXPECT_NEAR(answer.oracle->twist_angle / c.twist, 1.0, kOracleTolerance) << c.load;
   }
@@ -78,22 +78,24 @@ TEST(Oracle, ConeAndFlatPunch) {
   const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
   const Oracle cone = *find_oracle(example("cone", {"load.moment_ratio=0.5"})).oracle;
   const double cone_radius = std::sqrt(2.0 * 200.0 / (std::numbers::pi * effective_modulus * 0.01));
-  EXPECT_EQ(cone.profile.get(), &analytic::cone_profile());
+  EXPECT_EQ(cone.normal.profile.get(), &analytic::cone_profile());
   EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kOracleTolerance);
-  EXPECT_NEAR(cone.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kOracleTolerance);
-  EXPECT_NEAR(cone.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0, kOracleTolerance);
-  EXPECT_NEAR(cone.moment / cone.moment_limit, 0.5, kOracleTolerance);
-  EXPECT_EQ(cone.peak_pressure, HUGE_VAL);
+  EXPECT_NEAR(cone.normal.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kOracleTolerance);
+  EXPECT_NEAR(cone.friction.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0,
+              kOracleTolerance);
+  EXPECT_NEAR(cone.moment / cone.friction.moment_limit, 0.5, kOracleTolerance);
+  EXPECT_EQ(cone.normal.peak_pressure, HUGE_VAL);
   EXPECT_EQ(cone.pressure(0.0), HUGE_VAL);
   EXPECT_EQ(cone.traction(0.0), 0.0);
 
   const Oracle punch = *find_oracle(example("flat_punch", {"load.moment_ratio=0.9"})).oracle;
-  EXPECT_EQ(punch.profile.get(), &analytic::flat_punch_profile());
+  EXPECT_EQ(punch.normal.profile.get(), &analytic::flat_punch_profile());
   EXPECT_EQ(punch.contact_radius, 5e-4);
-  EXPECT_NEAR(punch.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kOracleTolerance);
-  EXPECT_NEAR(punch.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0, kOracleTolerance);
+  EXPECT_NEAR(punch.normal.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kOracleTolerance);
+  EXPECT_NEAR(punch.friction.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0,
+              kOracleTolerance);
   EXPECT_LT(punch.stick_radius, punch.contact_radius);
-  EXPECT_EQ(punch.peak_pressure, HUGE_VAL);
+  EXPECT_EQ(punch.normal.peak_pressure, HUGE_VAL);
   EXPECT_NEAR(punch.pressure(0.0) / (1000.0 / (2.0 * std::numbers::pi * 5e-4 * 5e-4)), 1.0, kOracleTolerance);
   EXPECT_EQ(punch.pressure(5e-4), 0.0);
   EXPECT_EQ(punch.traction(6e-4), 0.0);
@@ -116,7 +118,7 @@ TEST(Oracle, EllipsoidOfEqualRadiiIsASphere) {
   const OracleAnswer round = find_oracle(
       example("ellipse", {"upper.radius_1=0.018", "upper.radius_2=0.018", "load.moment_ratio=0.7"}));
   ASSERT_TRUE(round.oracle) << round.reason;
-  EXPECT_EQ(round.oracle->profile.get(), &analytic::hertz_profile());
+  EXPECT_EQ(round.oracle->normal.profile.get(), &analytic::hertz_profile());
   EXPECT_EQ(round.oracle->contact_radius, sphere.contact_radius);
   EXPECT_EQ(round.oracle->twist_angle, sphere.twist_angle);
 }
@@ -143,7 +145,8 @@ CarriedByEllipse carried_by(const Oracle& oracle) {
           2.0 * std::numbers::pi / directions * (std::numbers::pi / 2 / points) * edge * std::cos(t) * r;
       const double pressure = oracle.pressure(oracle.radius(r * c, r * s));
       carried.load += area * pressure;
-      carried.limit += area * pressure * r * oracle.reference_bound / oracle.reference_pressure;
+      carried.limit +=
+          area * pressure * r * oracle.friction.reference_bound / oracle.normal.reference_pressure;
     }
   }
   return carried;
@@ -162,7 +165,7 @@ TEST(Oracle, EllipseIsHertzs) {
     const solver::HertzContact hertz = solver::hertz_contact(1000.0, 0.018, 0.0063, effective_modulus);
     EXPECT_NEAR(oracle.longer_semi_axis() / hertz.semi_axis_1, 1.0, 1e-13);
     EXPECT_NEAR(oracle.shorter_semi_axis() / hertz.semi_axis_2, 1.0, 1e-13);
-    EXPECT_NEAR(oracle.peak_pressure / hertz.peak_pressure, 1.0, 1e-13);
+    EXPECT_NEAR(oracle.normal.peak_pressure / hertz.peak_pressure, 1.0, 1e-13);
     const double angle = scene.surfaces.front().angle;
     const auto edge_at = [&](double direction) {
       return oracle.contact_radius / oracle.radius(std::cos(direction), std::sin(direction));
@@ -171,9 +174,9 @@ TEST(Oracle, EllipseIsHertzs) {
     EXPECT_NEAR(edge_at(angle + std::numbers::pi / 2) / hertz.semi_axis_2, 1.0, 1e-13);
     const CarriedByEllipse carried = carried_by(oracle);
     EXPECT_NEAR(carried.load / 1000.0, 1.0, kQuadrature);
-    EXPECT_NEAR(carried.limit / oracle.moment_limit, 1.0, kQuadrature);
+    EXPECT_NEAR(carried.limit / oracle.friction.moment_limit, 1.0, kQuadrature);
     EXPECT_EQ(oracle.moment,
-              *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) * oracle.moment_limit);
+              *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) * oracle.friction.moment_limit);
   }
 }
 
@@ -203,8 +206,8 @@ TEST(Oracle, PowerOfTwoIsASphere) {
   const OracleAnswer power = find_oracle(scene);
   ASSERT_TRUE(power.oracle) << power.reason;
   EXPECT_NEAR(power.oracle->contact_radius / sphere.contact_radius, 1.0, kOracleTolerance);
-  EXPECT_NEAR(power.oracle->peak_pressure / sphere.peak_pressure, 1.0, kOracleTolerance);
-  EXPECT_NEAR(power.oracle->approach / sphere.approach, 1.0, kOracleTolerance);
+  EXPECT_NEAR(power.oracle->normal.peak_pressure / sphere.normal.peak_pressure, 1.0, kOracleTolerance);
+  EXPECT_NEAR(power.oracle->normal.approach / sphere.normal.approach, 1.0, kOracleTolerance);
   EXPECT_NEAR(power.oracle->twist_angle / sphere.twist_angle, 1.0, kOracleTolerance);
   const double r = 0.6 * sphere.contact_radius;
   EXPECT_NEAR(power.oracle->pressure(r) / sphere.pressure(r), 1.0, kOracleTolerance);
@@ -216,15 +219,15 @@ TEST(Oracle, FindsThePeakOffTheAxis) {
   solver::Scene scene = paper({});
   scene.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
   const Oracle power = *find_oracle(scene).oracle;
-  EXPECT_NEAR(power.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kOracleTolerance);
+  EXPECT_NEAR(power.normal.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kOracleTolerance);
   const Oracle rounded = *find_oracle(example("rounded_punch")).oracle;
   double highest = 0.0;
   for (int i = 0; i <= 1000; ++i) {
     highest = std::max(highest, rounded.pressure(rounded.contact_radius * i / 1000.0));
   }
-  EXPECT_LE(highest, rounded.peak_pressure);
+  EXPECT_LE(highest, rounded.normal.peak_pressure);
   EXPECT_GE(highest,
-            rounded.peak_pressure * (1.0 - 1e-4));  // a thousandth of the radius from a smooth peak
+            rounded.normal.peak_pressure * (1.0 - 1e-4));  // a thousandth of the radius from a smooth peak
   EXPECT_GT(highest, 1.01 * rounded.pressure(0.0));
 }
 

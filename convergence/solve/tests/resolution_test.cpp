@@ -134,7 +134,7 @@ TEST(StatedOfTheTwist, OfASmallMomentIsNotThatOfTheLimit) {
     Scene scene = scene_of("paper", 48,
                            {"load.moment_ratio=0.001", fmt::format("contact.friction_law=\"{}\"", law),
                             law[0] == 't' ? "contact.shear_strength=5e7" : "contact.friction=0.1"});
-    scene.steps[0].torsion = solver::Moment{0.001 * find_oracle(scene).oracle->moment_limit};
+    scene.steps[0].torsion = solver::Moment{0.001 * find_oracle(scene).oracle->friction.moment_limit};
     const Json json = solve_scene(scene).result;
     expect_covered(json, "twist_error");
     EXPECT_LT(json["resolved"]["uncertainty"].get<double>(), 0.1) << law;
@@ -146,7 +146,7 @@ TEST_P(Stated, CoversAMomentThatIsNoRatioOfTheMeshsLimit) {
   for (const double ratio : {0.5, 0.95, 0.99, 0.998}) {
     SCOPED_TRACE(ratio);
     const Scene scene = scene_of(GetParam(), 48, {"load.moment_ratio=0.5"});
-    const double moment = ratio * find_oracle(scene).oracle->moment_limit;
+    const double moment = ratio * find_oracle(scene).oracle->friction.moment_limit;
     Scene in_newton_metres = scene;
     in_newton_metres.steps[0].torsion = solver::Moment{moment};
     try {

@@ -130,7 +130,7 @@ TEST_F(StudyTest, WithoutAnExactAnswerTheLimitIsExtrapolated) {
   const Json& series = result["series"]["ellipse"];
   EXPECT_EQ(series["basis"], "extrapolated");
   EXPECT_EQ(series["order"]["moment_limit"]["basis"], "extrapolated");
-  const double exact = find_oracle(solver::read_scene(kEllipse)).oracle->moment_limit;
+  const double exact = find_oracle(solver::read_scene(kEllipse)).oracle->friction.moment_limit;
   const Json& limit = series["extrapolated"]["moment_limit"];
   EXPECT_LE(std::abs(limit["value"].get<double>() - exact), limit["uncertainty"].get<double>());
   EXPECT_LE(limit["uncertainty"].get<double>(), 1e-2 * exact);
