@@ -115,8 +115,8 @@ RunCommand add_gate_command(CLI::App& app) {
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "
-      "could not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes "
-      "on from there.");
+      "could not be judged, or no gate ran. Finished solves are kept: an interrupted command "
+      "continues when it is repeated.");
   return running(command, request, run_gate);
 }
 
