@@ -60,71 +60,101 @@ enum class Detail {
           ///< counted
 };
 
-/// The numerical answer at the end of a step, in SI units (those of the scene). Fields have one value a cell
-/// of the grid, vectors first all first components, then all second ones.
-struct Solution {
-  Status status = Status::not_converged;
-  std::string message;  ///< why it did not converge
-
-  Grid grid{};              ///< m
-  Eigen::ArrayXd pressure;  ///< Pa
-  Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
-  /// m, (u1, u2) by them, of the lower surface less that of the upper, in contact; elsewhere it may be zero.
-  /// Where several processes share the grid, each may have its own rows alone.
-  Eigen::ArrayXd elastic_displacement;
-  Eigen::ArrayXd slip;         ///< m, (s1, s2) in this step
-  Eigen::ArrayXd stick;        ///< 1 where the bodies stick, else 0
-  FrictionLaw friction;        ///< in Pa
-  double shear_modulus = 0.0;  ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
-  std::vector<Omission> left_out;
-
-  Detail detail = Detail::all;
-  Certificate certificate{};
-  SlipDirection slip_direction{};  ///< NaN where nothing slips
-  Resolution resolution;
-
-  double normal_load = 0.0;     ///< W, N: what the pressure carries
-  double friction_force = 0.0;  ///< N, that slides the contact along a line: mu W under Coulomb's law
-  double peak_pressure = 0.0;   ///< Pa
+/// The pressure and the contact under it.
+struct ContactNumbers {
+  double normal_load = 0.0;    ///< W, N: the sum of the pressure
+  double peak_pressure = 0.0;  ///< Pa
+  double approach = 0.0;       ///< m
   /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells'
   /// area.
   double contact_radius = 0.0;
-  double contact_radius_counted = 0.0;   ///< m, of a circle with the contact cells' area
-  double stick_radius = 0.0;             ///< m, of a circle with the stick area, sub-cell
-  std::string stick_radius_note;         ///< why it is only counted, all or in part; empty if it is not
-  double stick_radius_counted = 0.0;     ///< m, of a circle with the stick cells' area
-  double approach = 0.0;                 ///< m
-  Step loads;                            ///< those of the step, as the scene has them
-  int cycle = 1;                         ///< counted from 1
-  double twist_angle = 0.0;              ///< rad, since the first step began
-  std::array<double, 2> displacement{};  ///< m, likewise
-  double moment = 0.0;                   ///< N m, carried by the tractions
-  std::array<double, 2> force{};         ///< N, likewise
-  double moment_limit = 0.0;             ///< N m, of this pressure and mesh, without force
-  LimitLoad limit;                       ///< of the loads imposed; lengths in m, its motion's scale free
-  double elastic_energy = 0.0;           ///< J, of the tractions: q.Kq/2
-  double dissipated = 0.0;               ///< J, in this step: mu p |s| over the contact
-  /// J: what the loads at the end of the step do in its motions, less what that stores elastically. Equal to
-  /// `dissipated` up to the certificate.
-  double work = 0.0;
-  int turns = 1;  ///< between pressure and tractions, under full coupling
+  double contact_radius_counted = 0.0;  ///< m, of a circle with the contact cells' area
   Index contact_cells = 0;
+  CountedArea contact_area;  ///< m^2
+};
+
+/// The part of the contact that sticks.
+struct StickNumbers {
+  double stick_radius = 0.0;          ///< m, of a circle with the stick area, sub-cell
+  std::string stick_radius_note;      ///< why all or part of it is only counted; empty if it is not
+  double stick_radius_counted = 0.0;  ///< m, of a circle with the stick cells' area
   Index stick_cells = 0;
-  CountedArea contact_area;            ///< m^2
-  CountedArea stick_area;              ///< m^2
-  double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
-  double pressure_applications = 0.0;  ///< likewise of the normal operator
+  CountedArea stick_area;  ///< m^2
+};
+
+/// Motions since the first step began, and the loads that the tractions carry.
+struct LoadNumbers {
+  double twist_angle = 0.0;              ///< rad
+  std::array<double, 2> displacement{};  ///< m
+  double moment = 0.0;                   ///< N m
+  std::array<double, 2> force{};         ///< N
+  double moment_limit = 0.0;             ///< N m, of this pressure and mesh, without force
+  double friction_force = 0.0;  ///< N, that slides the contact along a line: mu W under Coulomb's law
+  LimitLoad limit;              ///< of the loads imposed; lengths in m, its motion's scale free
+};
+
+struct EnergyNumbers {
+  double elastic_energy = 0.0;  ///< J, of the tractions: q.Kq/2
+  double dissipated = 0.0;      ///< J, in this step: mu p |s| over the contact
+  /// J: work of the loads at the end of the step in its motions, less the elastic energy that it stores.
+  /// Equal to `dissipated` up to the certificate.
+  double work = 0.0;
+};
+
+/// How good the answer is.
+struct QualityNumbers {
+  Certificate certificate{};
+  SlipDirection slip_direction{};  ///< NaN where nothing slips
+  Resolution resolution;
+};
+
+/// The work that a step took, tangential unless another problem is named.
+struct WorkNumbers {
+  int turns = 1;                       ///< between pressure and tractions, under full coupling
+  double operator_applications = 0.0;  ///< of all grids, in those of the finest one
+  double pressure_applications = 0.0;  ///< of the normal operator, counted in the same way
   double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver
   double predicted_bytes = 0.0;        ///< of all that the step holds, once its contact was known
   int threads = 1;
   Seconds seconds;
-
   int iterations = 0;           ///< of the method that found the tractions
-  double change = 0.0;          ///< what its stopping test saw last
+  double change = 0.0;          ///< last value of the quantity that its stopping test compares
   std::vector<GridWork> grids;  ///< its work, coarsest grid first
   Safeguards safeguards;        ///< of the step: tractions and pressure, all grids
   int pressure_iterations = 0;
   double pressure_complementarity = 0.0;
+};
+
+/// Fields on the grid: one value a cell, vectors first all first components, then all second ones.
+struct SolutionFields {
+  Grid grid{};              ///< m
+  Eigen::ArrayXd pressure;  ///< Pa
+  Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
+  /// m, (u1, u2) by them, of the lower surface less that of the upper, in contact; elsewhere it may be zero.
+  /// Where several processes share the grid, each may hold its own rows only.
+  Eigen::ArrayXd elastic_displacement;
+  Eigen::ArrayXd slip;   ///< m, (s1, s2) in this step
+  Eigen::ArrayXd stick;  ///< 1 where the bodies stick, else 0
+};
+
+/// The numerical answer at the end of a step, in SI units (those of the scene).
+struct Solution : SolutionFields,
+                  ContactNumbers,
+                  StickNumbers,
+                  LoadNumbers,
+                  EnergyNumbers,
+                  QualityNumbers,
+                  WorkNumbers {
+  Status status = Status::not_converged;
+  std::string message;  ///< why it did not converge
+  Step loads;           ///< those of the step, as the scene has them
+  int cycle = 1;        ///< counted from 1
+  Detail detail = Detail::all;
+  FrictionLaw friction;        ///< in Pa
+  double shear_modulus = 0.0;  ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
+  bool coupled =
+      false;  ///< the pressure displaces the surfaces tangentially: K13, K23 enter and are not zero
+  std::vector<Omission> left_out;
 };
 
 }  // namespace slipstick::solver

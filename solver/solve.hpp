@@ -5,6 +5,7 @@
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/grid/ranks.hpp"
+#include "solver/newton/progress.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
@@ -12,29 +13,38 @@ namespace slipstick::solver {
 
 struct HistoryState;
 
-/// Callbacks of a solve, and objects that it shares with others.
+/// Observes a solve. An exception that one of these functions throws ends it.
+struct Observer {
+  Progress progress = {};  ///< of the pressure, then of the tractions
+  /// Called with the solution at the end of each step; the last one is returned as it leaves it.
+  std::function<void(Solution&)> step = {};
+  /// Called with the state at the end of each step that another follows.
+  std::function<void(const HistoryState&)> state = {};
+};
+
+/// How a scene is solved.
 struct SolveOptions {
-  /// Called now and then, for the pressure and then for the tractions, with the iterations or applications so
-  /// far and what the stopping test sees. What it throws ends the solve.
-  std::function<void(int iteration, double change)> progress;
-  /// Called at the end of each step of a history.
-  std::function<void(const Solution&)> on_step = {};
+  Observer observer = {};
   /// Objects that solves of one size share; empty: each step shares with the next. They change no digit, and
   /// seconds are those of the solve by itself.
   std::shared_ptr<SolveCache> cache = {};
-  /// Called at the end of each step that another follows, with what that one needs.
-  std::function<void(const HistoryState&)> on_state = {};
   /// The history goes on from here: such a state of the same scene. The answer has the digits that it would
   /// have had without the break. Empty: from the first step.
   std::shared_ptr<const HistoryState> resumed = {};
   Detail detail = Detail::all;
-  /// The processes that share the solve; all of them call solve() alike.
+  /// The processes that share the solve; all of them call solve() with the same scene.
   Ranks ranks = {};
 };
 
-/// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError
-/// for what the scene got wrong, gross slip and a model that is not on a grid (ModelChoice::exact) among it;
-/// what the numbers do is in the status.
+/// Solves a scene, step by step; returns the last one, or the first that did not converge. Its
+/// resolution.path is zero: that takes further solves. Throws
+/// InputError for mistakes in the scene, gross slip and a model that is not on a grid (ModelChoice::exact)
+/// included; numerical failure is a status.
+///
+/// 1. Makes the scene dimensionless, on its grid (model/make_model.hpp).
+/// 2. For each step of the history, in parts (history/history_step.hpp): pressure, tractions, numbers
+///    (step/solve_step.hpp).
+/// 3. Puts units on the answer (step/to_si.hpp).
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
 }  // namespace slipstick::solver

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "solver/contact/certificate.hpp"
 #include "solver/contact/fitted_motion.hpp"
 
 namespace slipstick::convergence {

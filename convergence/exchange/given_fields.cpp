@@ -4,13 +4,12 @@
 
 #include "convergence/exchange/given_contact.hpp"
 #include "solver/contact/fitted_motion.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
-#include "solver/step/contact_state.hpp"
-#include "solver/step/describe_step.hpp"
 #include "solver/step/pressure.hpp"
 #include "solver/step/resolution.hpp"
-#include "solver/step/tractions.hpp"
+#include "solver/step/to_si.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -75,30 +74,30 @@ solver::Solution describe_given(Scene scene, const GivenFields& fields) {
   scene.method = solver::Method::coulomb;  // others know less than a field may be
   solver::validate(scene);
   require_one_load(scene);
-  solver::ModelSolution solution;
-  solution.model = solver::make_model(scene);
-  const Model& model = solution.model;
+  const Model model = solver::make_model(scene);
   const Index cells = model.grid.cells();
   if (fields.pressure.size() != cells || fields.traction.size() != 2 * cells) {
     throw std::invalid_argument("fields of another grid");
   }
-  const Step& step = scene.steps.front();
-  solution.normal = describe_pressure(scene, model, fields.pressure / model.stress_unit);
-  const solver::LoadStep loads = solver::load_step(scene, model, step, solution.normal.pressure, {});
-  solution.tangential = describe_tractions(scene, model, loads.problem, solution.normal.pressure,
-                                           fields.traction / model.stress_unit);
-  solution.status = solver::Status::converged;
-  solution.loads = step;
-  solution.twist_angle = solution.tangential.twist;
-  for (std::size_t k = 0; k < 2; ++k) {
-    solution.displacement[k] = solution.tangential.displacement[k] * model.length_unit;
-  }
-  solver::describe(solution, scene, loads, solution.tangential.slip);
+  solver::StepResult result;
+  result.status = solver::Status::converged;
+  result.step.loads = scene.steps.front();
+  solver::SolvedStep& solved = result.solved;
+  solved.normal = describe_pressure(scene, model, fields.pressure / model.stress_unit);
+  solved.loads = solver::load_step(scene, model, result.step.loads, solved.normal.pressure, {});
+  solved.tangential = describe_tractions(scene, model, solved.loads.problem, solved.normal.pressure,
+                                         fields.traction / model.stress_unit);
+  const auto& [shift1, shift2] = solved.tangential.displacement;
+  result.motion = {shift1, shift2, solved.tangential.twist};
+  result.numbers =
+      solver::describe_step(scene, model, result.step, solved, result.motion, solved.tangential.slip);
+  result.work.threads = model.threads;
+  result.work.pressure_complementarity = solved.normal.complementarity;
+  solver::Solution solution = solver::to_si(std::move(result), model);
   solver::OpenHistory open;
   open.add({}, solver::end_of(solution), solution.resolution);
-  solution.resolution.mesh = open.mesh();
-  solver::state_uncertainty(solution, scene, 0);
-  return solver::in_si(std::move(solution));
+  solution.resolution = solver::with_uncertainty(solution, scene, 0, open.mesh());
+  return solution;
 }
 
 PosedScene pose(Scene scene, bool with_limit) {

@@ -11,8 +11,8 @@
 #include "convergence/orders/limit.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/studies/study_run.hpp"
-#include "solver/load_path.hpp"
 #include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
@@ -229,7 +229,8 @@ std::string words_of(const std::string& number) {
 
 std::vector<PageNumber> number_rows(const Scene& scene, const std::vector<Json>& results,
                                     const StudyResult& study) {
-  const bool on_path = solver::depends_on_path(scene, solver::make_model(scene));
+  const solver::Model model = solver::make_model(scene);
+  const bool on_path = depends_on_path(scene, model.pressure_coupling && model.law->couples());
   const Json& answer = results.back();
   std::vector<PageNumber> rows;
   for (const auto& [key, words, unit] : kNumbers) {

@@ -4,6 +4,7 @@
 
 #include "convergence/exchange/program_solve.hpp"
 #include "convergence/results/make_record.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 #include "solver/elasticity/random_rounding.hpp"
 #include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
@@ -29,8 +30,10 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   std::vector<StepRecord> steps;
-  solver::SolveOptions to_solver{
-      .progress = options.progress, .cache = options.cache, .detail = options.detail, .ranks = options.ranks};
+  solver::SolveOptions to_solver{.observer = {options.progress},
+                                 .cache = options.cache,
+                                 .detail = options.detail,
+                                 .ranks = options.ranks};
   if (options.resumed) {
     steps = options.resumed->steps;
     to_solver.resumed = options.resumed->state;
@@ -38,18 +41,18 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
       solved.exact = history->advance(solver::step_of(scene, k));
     }
   }
-  to_solver.on_step = [&](const solver::Solution& at) {
+  to_solver.observer.step = [&](const solver::Solution& at) {
     const solver::KeptRounding scope(static_cast<int>(Rounding::nearest));
     solved.exact = history->advance(at.loads);
     if (has_history(scene)) steps.push_back(make_step(scene, at, solved.exact));
     if (options.on_step) options.on_step(at, solved.exact);
   };
   if (options.on_state) {
-    to_solver.on_state = [&](const solver::HistoryState& state) { options.on_state(state, steps); };
+    to_solver.observer.state = [&](const solver::HistoryState& state) { options.on_state(state, steps); };
   }
   try {
     const solver::KeptRounding scope(static_cast<int>(options.rounding));
-    solved.solution = solver::solve(scene, to_solver);
+    solved.solution = solve_with_path(scene, to_solver);
   } catch (const solver::InputError& error) {
     if (!steps.empty() && options.incomplete != nullptr) {
       *options.incomplete = make_incomplete(scene.name, error.what(), std::move(steps));

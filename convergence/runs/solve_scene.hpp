@@ -28,7 +28,7 @@ struct FinishedSteps {
 
 struct SolveSceneOptions {
   /// See solver::SolveOptions.
-  std::function<void(int iteration, double change)> progress = {};
+  solver::Progress progress = {};
   /// Called at the end of each step of a history, or of the one load.
   std::function<void(const solver::Solution&, const OracleAnswer&)> on_step = {};
   /// How the solve rounds. The exact answer is always rounded to nearest.

@@ -8,11 +8,10 @@
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/load_path.hpp"
-#include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -102,7 +101,7 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
     if (trial > 0 && steps * static_cast<std::size_t>(scene.substeps) > kPathTrialParts) return scene;
     double path = 0.0;
     try {
-      path = path_of(solver::solve(coarse));
+      path = path_of(solve_with_path(coarse));
     } catch (const InputError&) {
       return scene;  // the mesh that counts may do better, or says it again
     }
@@ -153,7 +152,7 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
     made.reached = reached_error(scene, made.answer.solution, to_json(made.answer.record), of);
     if (of == AccuracyOf::twist) {
       made.path = path_of(made.answer.solution);
-    } else if (made.reached.how != "exact" && solver::depends_on_path(scene, solver::make_model(scene))) {
+    } else if (made.reached.how != "exact" && depends_on_path(scene, made.answer.solution.coupled)) {
       made.path = NAN;
     }
     return made;

@@ -88,7 +88,7 @@ std::vector<double> numbers_of(const Json& json) {
 /// A checksum of the bits of all numbers and of the text: a file that was changed is refused.
 std::string sum_of(const ContactState& contact, const std::string& text) {
   std::uint64_t sum = checksum(text);
-  for (const Eigen::ArrayXd* const field : {&contact.pressure, &contact.traction, &contact.slip}) {
+  for (const Eigen::ArrayXd* const field : {&contact.normal.pressure, &contact.traction, &contact.slip}) {
     for (const double value : *field) sum = checksum_of_word(std::bit_cast<std::uint64_t>(value), sum);
   }
   return fmt::format("{:016x}", sum);
@@ -130,16 +130,17 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
   HistoryState state;
   std::vector<StepRecord> steps;
   try {
-    state.contact.pressure = numbers_in(file_, "pressure");
+    state.contact.normal = normal_of(json.at("normal"));
+    state.contact.normal.pressure = numbers_in(file_, "pressure");
     state.contact.traction = numbers_in(file_, "traction");
     if (json.at("has_slip").get<bool>()) state.contact.slip = numbers_in(file_, "slip");
     if (as_text(numbers_in(file_, "checksum")) != sum_of(state.contact, text)) throw damaged;
     const Json& motion = json.at("motion");
     state.contact.motion = {motion.at(0), motion.at(1), motion.at(2)};
     const std::vector<double> end = numbers_of(json.at("end"));
-    state.contact.end = {end.at(0), {end.at(1), end.at(2)}, end.at(3), {end.at(4), end.at(5)}, end.at(6)};
+    state.end = {end.at(0), {end.at(1), end.at(2)}, end.at(3), {end.at(4), end.at(5)}, end.at(6)};
     const std::vector<double> open = numbers_of(json.at("open"));
-    solver::OpenHistory& at = state.contact.open;
+    solver::OpenHistory& at = state.open;
     at.worst = open.at(0);
     at.last_twist = open.at(1);
     std::size_t next = 2;
@@ -149,7 +150,6 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
     }
     state.contact.energy = json.at("energy");
     state.finished = json.at("finished");
-    state.normal = normal_of(json.at("normal"));
     for (const Json& step : json.at("steps")) steps.push_back(step_from_json(step));
   } catch (const Json::exception&) {
     throw damaged;
@@ -170,13 +170,13 @@ void Checkpoint::write(const HistoryState& state, const std::vector<StepRecord>&
                  {"program", program_},
                  {"finished", state.finished},
                  {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
-                 {"end", end_json(contact.end)},
-                 {"open", open_json(contact.open)},
+                 {"end", end_json(state.end)},
+                 {"open", open_json(state.open)},
                  {"energy", contact.energy},
-                 {"normal", normal_json(state.normal)},
+                 {"normal", normal_json(contact.normal)},
                  {"has_slip", contact.slip.size() > 0},
                  {"steps", std::move(steps_json)}});
-  std::vector<solver::Column> columns{{"pressure", contact.pressure}, {"traction", contact.traction}};
+  std::vector<solver::Column> columns{{"pressure", contact.normal.pressure}, {"traction", contact.traction}};
   if (contact.slip.size() > 0) columns.push_back({"slip", contact.slip});
   write_datasets(file_, columns, {{"history", text}, {"checksum", sum_of(contact, text)}});
 }

@@ -1,18 +1,55 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
-#include "solver/contact/normal_contact.hpp"
+#include "solver/solution.hpp"
 #include "solver/step/contact_state.hpp"
 
 namespace slipstick::solver {
 
-/// Where a history stands at the end of a step: all that the next one needs to give the same digits.
-struct HistoryState {
-  std::size_t finished = 0;  ///< steps, those of earlier cycles too
-  ContactState contact;
-  /// How its pressure was found, for a step under the same normal load. The pressure itself is contact's.
-  NormalSolution normal;
+/// Motion since the first step began, and loads, at the end of a step; in SI units.
+struct StepEnd {
+  double twist = 0.0;
+  std::array<double, 2> displacement{};
+  double moment = 0.0;
+  std::array<double, 2> force{};
+  double moment_limit = 0.0;
 };
+StepEnd end_of(const LoadNumbers& numbers);
+
+/// How far two ends lie apart.
+Quantities distance(const StepEnd& from, const StepEnd& to);
+
+/// The mesh error of the steps so far. Errors of steps add up, whatever their signs. But a contact forgets a
+/// loop once a larger one closes: the sum is bounded by twice the largest size that was reached, at the
+/// relative error of the worst step.
+struct OpenHistory {
+  Quantities sum;
+  Quantities largest;
+  double worst = 0.0;
+  /// The same of Resolution::open. A step that turns on in the direction of the last one adds the increase.
+  Quantities small_stick;
+  Quantities largest_small_stick;
+  Quantities last_small_stick;  ///< Resolution::open of the last step
+  double last_twist = 0.0;      ///< twist of the last step
+
+  /// A step from one end to the next.
+  void add(const StepEnd& from, const StepEnd& to, const Resolution& step);
+  Quantities mesh() const;
+};
+
+/// The state of a history at the end of a step. From it the next step gives the same digits as without a
+/// break.
+struct HistoryState {
+  std::size_t finished = 0;  ///< steps, those of earlier cycles included
+  ContactState contact;
+  StepEnd end;
+  OpenHistory open;
+};
+
+/// A state that was kept, checked against the scene that goes on from it. cells: of the scene's grid. Throws
+/// std::invalid_argument for a state of another scene.
+HistoryState restore_state(const HistoryState& kept, const Scene& scene, Index cells);
 
 }  // namespace slipstick::solver

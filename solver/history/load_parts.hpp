@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "solver/history/history_state.hpp"
 #include "solver/scene/scene.hpp"
-#include "solver/step/contact_state.hpp"
 
 /// How the loads of a step are brought: in parts, each an implicit step of its own. Each part opposes
 /// traction to its slip as a whole. So the answer depends on the number of parts wherever slip turns within a

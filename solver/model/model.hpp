@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/elasticity.hpp"
@@ -68,7 +67,6 @@ struct Model : Dimensionless {
   bool forces = false;          ///< some step brings a tangential force or displacement
   Reduction pressure_part;      ///< of the grid, on which the pressure is found
   int threads = 1;              ///< that solve it
-  std::vector<Omission> left_out;
   std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };
 

@@ -47,10 +47,10 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
                   : Reduction(model.grid, occupied);
 }
 
-void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations) {
-  std::vector<Omission>& left_out = model.left_out;
+std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part,
+                                bool translations) {
+  std::vector<Omission> left_out = scene.left_out;
   const Grid& grid = part.grid();
-  left_out = scene.left_out;
   if (!model.pressure_coupling) {
     left_out.push_back({"K13, K23", !model.law->couples()
                                         ? "similar materials: pressure moves both surfaces alike"
@@ -77,6 +77,7 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
   if (part.diagonal()) {
     left_out.push_back({"one traction field", "the diagonal is a mirror too: q2(x1, x2) = -q1(x2, x1)"});
   }
+  return left_out;
 }
 
 }  // namespace slipstick::solver

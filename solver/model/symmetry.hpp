@@ -21,7 +21,9 @@ bool has_translations(const Scene& scene, const Model& model, const Eigen::Array
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
                         const Eigen::ArrayXd& before = {});
 
-/// Notes the omissions of traction_part() and has_translations() in the model.
-void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations);
+/// The parts of the problem that a solve leaves out, with the reasons: those of the scene, of traction_part()
+/// and of has_translations().
+std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part,
+                                bool translations);
 
 }  // namespace slipstick::solver

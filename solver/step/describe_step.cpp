@@ -1,7 +1,6 @@
 #include "solver/step/describe_step.hpp"
 
 #include <numbers>
-#include <utility>
 
 #include "solver/contact/stick_front.hpp"
 #include "solver/grid/counted_area.hpp"
@@ -32,18 +31,17 @@ double counted_by_side(const Scene& scene) {
   return scene.pressure == PressureModel::hertz_averaged ? kCutBySide : kCountedBySide;
 }
 
-/// The pressure and the contact under it.
-void describe_contact(ModelSolution& solution, const Scene& scene) {
-  const Model& model = solution.model;
+ContactNumbers describe_contact(const Scene& scene, const Model& model, const NormalSolution& normal) {
   const Grid& grid = model.grid;
-  const ArrayXd& pressure = solution.normal.pressure;
-  solution.normal_load = pressure.sum() * grid.cell_area() * model.force_unit();
-  solution.peak_pressure = pressure.maxCoeff() * model.stress_unit;
-  solution.approach = solution.normal.approach * model.length_unit;
-  solution.contact_cells = (pressure > 0.0).count();
-  solution.contact_area = counted_area(model.grid_in_m(), pressure, counted_by_side(scene));
-  solution.contact_radius = measure_contact_radius(model, pressure) * model.length_unit;
-  solution.contact_radius_counted = equal_area_radius(grid, solution.contact_cells) * model.length_unit;
+  const ArrayXd& pressure = normal.pressure;
+  const Index cells = (pressure > 0.0).count();
+  return {.normal_load = pressure.sum() * grid.cell_area(),
+          .peak_pressure = pressure.maxCoeff(),
+          .approach = normal.approach,
+          .contact_radius = measure_contact_radius(model, pressure),
+          .contact_radius_counted = equal_area_radius(grid, cells),
+          .contact_cells = cells,
+          .contact_area = counted_area(model.grid_in_m(), pressure, counted_by_side(scene))};
 }
 
 /// Force along x1 and x2 and moment of the tractions, over the cell's area.
@@ -57,61 +55,61 @@ std::array<double, 3> resultants_of(const ArrayXd& traction, const Grid& grid) {
   });
 }
 
-/// Stick area, loads and their limits, certificate. slip: see ContactState.
-void describe_tractions(ModelSolution& solution, const LoadStep& loads, const ArrayXd& slip) {
-  const Model& model = solution.model;
-  const Grid& grid = model.grid;
-  const TangentialProblem& problem = loads.problem;
-  const TangentialSolution& tangential = solution.tangential;
-  solution.stick_cells = (tangential.stick > 0.0).count();
-  const bool sticks = solution.stick_cells == solution.contact_cells;
-  solution.stick_area = sticks ? solution.contact_area : counted_area(model.grid_in_m(), tangential.stick);
-  solution.stick_radius_counted = equal_area_radius(grid, solution.stick_cells) * model.length_unit;
+StickNumbers describe_stick(const Model& model, const SolvedStep& solved, const ContactNumbers& contact,
+                            const ArrayXd& slip, Detail detail) {
+  const ArrayXd& stick = solved.tangential.stick;
+  StickNumbers numbers;
+  numbers.stick_cells = (stick > 0.0).count();
+  const bool sticks = numbers.stick_cells == contact.contact_cells;
+  numbers.stick_area = sticks ? contact.contact_area : counted_area(model.grid_in_m(), stick);
+  numbers.stick_radius_counted = equal_area_radius(model.grid, numbers.stick_cells);
+  numbers.stick_radius = numbers.stick_radius_counted;
   if (sticks) {
-    solution.stick_radius = solution.contact_radius;
-    solution.stick_radius_note = "everything sticks";
-  } else if (solution.detail != Detail::all) {
-    solution.stick_radius = solution.stick_radius_counted;
-    solution.stick_radius_note = "cells counted; no sub-cell fit was asked for";
+    numbers.stick_radius = contact.contact_radius;
+    numbers.stick_radius_note = "everything sticks";
+  } else if (detail != Detail::all) {
+    numbers.stick_radius_note = "cells counted, without a sub-cell fit";
   } else if (slip.size() > 0) {
-    const StickFront front = find_stick_front(grid, problem.friction_bound, slip, tangential.stick);
-    solution.stick_radius = front.radius * model.length_unit;
-    solution.stick_radius_note = front.why_counted;
+    const StickFront front = find_stick_front(model.grid, solved.loads.problem.friction_bound, slip, stick);
+    numbers.stick_radius = front.radius;
+    numbers.stick_radius_note = front.why_counted;
   } else {
-    solution.stick_radius = solution.stick_radius_counted;
-    solution.stick_radius_note = "the contact has grown: slip does not begin where stick ends";
+    numbers.stick_radius_note = "the contact has grown: slip does not begin where stick ends";
   }
-  const double moment_unit = grid.cell_area() * model.moment_unit();
-  const double force_unit = grid.cell_area() * model.force_unit();
-  const auto [force1, force2, moment] = resultants_of(tangential.traction, grid);
-  const std::array force{force1, force2};
-  solution.moment = moment * moment_unit;
-  solution.force = {force[0] * force_unit, force[1] * force_unit};
-  solution.moment_limit = loads.moment_limit * moment_unit;
-  solution.friction_force = problem.friction_bound.sum() * force_unit;
-  solution.limit = loads.limit;
-  if (solution.limit.centre) {
-    for (double& x : *solution.limit.centre) x *= model.length_unit;
-  }
+  return numbers;
+}
+
+LoadNumbers describe_loads(const Model& model, const SolvedStep& solved, const RigidMotion& motion) {
+  const auto [force1, force2, moment] = resultants_of(solved.tangential.traction, model.grid);
+  return {.twist_angle = motion.twist,
+          .displacement = {motion.delta1, motion.delta2},
+          .moment = moment,
+          .force = {force1, force2},
+          .moment_limit = solved.loads.moment_limit,
+          .friction_force = solved.loads.problem.friction_bound.sum(),
+          .limit = solved.loads.limit};
+}
+
+Certificate certificate_of(const Model& model, const SolvedStep& solved, const LoadNumbers& carried) {
+  const Grid& grid = model.grid;
+  const TangentialProblem& problem = solved.loads.problem;
+  const TangentialSolution& tangential = solved.tangential;
   const bool inherits = problem.energy_before > 0.0 || model.pressure_coupling;
   const double reach = 0.5 * std::hypot(grid.x1(grid.n1 - 1) - grid.x1(0), grid.x2(grid.n2 - 1) - grid.x2(0));
   const double motion =
       std::hypot(tangential.displacement[0], tangential.displacement[1]) + std::abs(tangential.twist) * reach;
-  solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
-                                 problem.friction_bound, grid, problem.moment.value_or(moment),
-                                 problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
-                                 model.law->least_eigenvalue(grid.h1, grid.h2),
-                                 {problem.energy_before, inherits ? motion : 0.0});
+  return certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
+                 problem.friction_bound, grid, problem.moment.value_or(carried.moment),
+                 problem.displacement ? carried.force : problem.force.value_or(std::array{0.0, 0.0}),
+                 model.law->least_eigenvalue(grid.h1, grid.h2),
+                 {problem.energy_before, inherits ? motion : 0.0});
 }
 
-/// Where the work of the loads went.
-void describe_energy(ModelSolution& solution, const LoadStep& loads) {
-  const Model& model = solution.model;
-  const TangentialSolution& tangential = solution.tangential;
-  const double unit = model.grid.cell_area() * model.moment_unit();
+EnergyNumbers describe_energy(const Model& model, const LoadStep& loads,
+                              const TangentialSolution& tangential) {
   const Index cells = model.grid.cells();
   const ArrayXd& bound = loads.problem.friction_bound;
-  using Sums = std::array<double, 3>;  // over the moment's unit and the cell's area
+  using Sums = std::array<double, 3>;
   const auto [elastic, dissipated, of_loads] =
       Sweep::whole(model.grid).sum<Sums>([&](Index first, Index last, Sums& sum) {
         const Index n = last - first;
@@ -124,53 +122,33 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
                     (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(),
                     -(q1 * s1 + q2 * s2).sum()};
       });
-  solution.elastic_energy = elastic * unit;
-  solution.dissipated = dissipated * unit;
-  solution.work = of_loads * unit;
-  // Slip that may be rounding has no direction.
-  const Certificate& certificate = solution.certificate;
-  const bool slips = solution.stick_cells < solution.contact_cells &&
-                     !(dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
-  solution.slip_direction = slips ? slip_direction(tangential.traction, tangential.slip)
-                                  : SlipDirection{std::nan(""), std::nan("")};
+  return {elastic, dissipated, of_loads};
+}
+
+/// NaN for slip that may be rounding.
+SlipDirection direction_of(const TangentialSolution& tangential, const StepNumbers& numbers) {
+  const Certificate& certificate = numbers.quality.certificate;
+  const bool slips =
+      numbers.stick.stick_cells < numbers.contact.contact_cells &&
+      !(numbers.energy.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
+  return slips ? slip_direction(tangential.traction, tangential.slip)
+               : SlipDirection{std::nan(""), std::nan("")};
 }
 
 }  // namespace
 
-void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const ArrayXd& slip) {
-  describe_contact(solution, scene);
-  describe_tractions(solution, loads, slip);
-  const Model& model = solution.model;
-  solution.resolution =
-      resolution(scene, solution.loads, model.grid, loads, solution.tangential, solution.contact_area);
-  solution.stick_area.uncertainty += solution.resolution.stick_area * model.grid_in_m().cell_area();
-  solution.resolution.open.displacement *= model.length_unit;
-  describe_energy(solution, loads);
-}
-
-Solution in_si(ModelSolution solution) {
-  const Model& model = solution.model;
-  solution.grid = model.grid_in_m();
-  solution.friction = model.friction.to_dimensionless(1.0 / model.stress_unit);
-  solution.threads = model.threads;
-  solution.shear_modulus = model.stress_unit;
-  const auto in_unit = [](ArrayXd& field, double unit) {
-    field *= unit;
-    return std::move(field);
-  };
-  solution.pressure = in_unit(solution.normal.pressure, model.stress_unit);
-  solution.traction = in_unit(solution.tangential.traction, model.stress_unit);
-  solution.elastic_displacement = in_unit(solution.tangential.elastic_displacement, model.length_unit);
-  solution.slip = in_unit(solution.tangential.slip, model.length_unit);
-  solution.stick = std::move(solution.tangential.stick);
-  solution.left_out = model.left_out;
-  solution.certificate.energy *= model.grid.cell_area() * model.moment_unit();
-  solution.iterations = solution.tangential.iterations;
-  solution.change = solution.tangential.change;
-  solution.grids = std::move(solution.tangential.grids);
-  solution.pressure_iterations = solution.normal.iterations;
-  solution.pressure_complementarity = solution.normal.complementarity;
-  return solution;
+StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step,
+                          const SolvedStep& solved, const RigidMotion& motion, const ArrayXd& slip) {
+  StepNumbers numbers;
+  numbers.contact = describe_contact(scene, model, solved.normal);
+  numbers.stick = describe_stick(model, solved, numbers.contact, slip, step.detail);
+  numbers.loads = describe_loads(model, solved, motion);
+  numbers.energy = describe_energy(model, solved.loads, solved.tangential);
+  numbers.quality = {.certificate = certificate_of(model, solved, numbers.loads),
+                     .resolution = resolution(scene, step.loads, model.grid, solved.loads, solved.tangential,
+                                              numbers.contact.contact_area)};
+  numbers.quality.slip_direction = direction_of(solved.tangential, numbers);
+  return numbers;
 }
 
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {

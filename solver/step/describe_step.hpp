@@ -1,31 +1,37 @@
 #pragma once
 
-#include <functional>
-
-#include "solver/contact/normal_contact.hpp"
 #include "solver/model/model.hpp"
 #include "solver/solution.hpp"
 #include "solver/step/tractions.hpp"
 
 namespace slipstick::solver {
 
-/// The answer as it was found: fields in the model's units, those of Solution not yet filled in.
-struct ModelSolution : Solution {
-  Model model;
+/// The loads of a step, and how much is computed from its fields.
+struct StepLoads {
+  Step loads;  ///< as the scene has them
+  Detail detail = Detail::all;
+};
+
+/// Pressure and tractions of a step, with the problem that they solve.
+struct SolvedStep {
+  LoadStep loads;
   NormalSolution normal;
   TangentialSolution tangential;
 };
 
-/// solve() without the change of units.
-ModelSolution solve_in_model_units(const Scene& scene,
-                                   const std::function<void(const ModelSolution&)>& on_step = {});
+/// The numbers of a step in the model's units; forces, moments and energies over the cell area, counted areas
+/// in m^2.
+struct StepNumbers {
+  ContactNumbers contact;
+  StickNumbers stick;
+  LoadNumbers loads;
+  EnergyNumbers energy;
+  QualityNumbers quality;
+};
 
-/// The answer with its fields, in SI units.
-Solution in_si(ModelSolution solution);
-
-/// Fills in the members that follow from pressure, tractions and loads: the contact, the stick area, loads
-/// and limits, certificate, energies, resolution. slip: see ContactState.
-void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const Eigen::ArrayXd& slip);
+/// motion: since the first step began. slip: see ContactState.
+StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step,
+                          const SolvedStep& solved, const RigidMotion& motion, const Eigen::ArrayXd& slip);
 
 /// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
 /// pressure about its centre (those along the axes are a_i^2/5), which know the radius to far less than a

@@ -52,7 +52,7 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
 /// On the part of the grid that the model leaves; the answer is on the whole one.
 NormalSolution solved_pressure(const Scene& scene, const Model& model, double normal_load,
                                const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
-                               const std::function<void(int, double)>& progress) {
+                               const Progress& progress) {
   // Shear opens the gap as it likes.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
@@ -91,8 +91,7 @@ HertzContact under_part_of_load(const HertzContact& contact, double part) {
 }  // namespace
 
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
-                             const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
-                             const std::function<void(int, double)>& progress) {
+                             const Eigen::ArrayXd& opening, const StaggeredTarget& goal, const Progress& progress) {
   if (scene.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
   const double load = to_dimensionless(*step.normal, model.force_unit());
   if (scene.pressure == PressureModel::solved)

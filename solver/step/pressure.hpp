@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/normal_contact.hpp"
 #include "solver/model/model.hpp"
@@ -16,6 +14,6 @@ namespace slipstick::solver {
 /// says.
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
                              const Eigen::ArrayXd& opening = {}, const StaggeredTarget& goal = {},
-                             const std::function<void(int applications, double gap)>& progress = {});
+                             const Progress& progress = {});
 
 }  // namespace slipstick::solver

@@ -190,8 +190,11 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   return result;
 }
 
-void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step) {
-  Resolution& resolution = solution.resolution;
+Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step,
+                            const Quantities& mesh, const Quantities& path) {
+  Resolution resolution = solution.resolution;
+  resolution.mesh = mesh;
+  resolution.path = path;
   const auto is_zero = [](const TorsionLoad& torsion) {
     return std::visit([](const auto& load) { return load.value == 0.0; }, torsion);
   };
@@ -213,6 +216,7 @@ void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step)
   if (!turned && !moved) resolution.mesh = resolution.path = {};  // what moves is rounding
   resolution.absolute = resolution.mesh.*resolution.number + resolution.path.*resolution.number;
   resolution.uncertainty = resolution.absolute > 0.0 ? resolution.absolute / value : resolution.step;
+  return resolution;
 }
 
 }  // namespace slipstick::solver

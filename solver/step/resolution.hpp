@@ -40,7 +40,9 @@ namespace slipstick::solver {
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
                       const TangentialSolution& tangential, const CountedArea& contact_area);
 
-/// Fills in which number the scene's steps up to the `step`-th leave open, and how far it may be off.
-void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step);
+/// The resolution of a solution at the end of the `step`-th step: with the number that the loads up to there
+/// leave open, and its uncertainty. mesh, path: see Resolution.
+Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step,
+                            const Quantities& mesh, const Quantities& path = {});
 
 }  // namespace slipstick::solver

@@ -31,7 +31,7 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
   if (!moves_by_pressure(scene, model)) return {};
   const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
   ArrayXd u(2 * pressure.size());
-  op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
+  op->apply(!before.untouched() ? ArrayXd(pressure - before.normal.pressure) : pressure, u);
   // A single cell does not move itself: what transforms leave there is no displacement.
   const double in_contact = ((pressure > 0.0).cast<double>().replicate(2, 1) * u).abs().maxCoeff();
   return in_contact <= kMirrorRounding * u.abs().maxCoeff() ? ArrayXd() : u;
@@ -138,9 +138,9 @@ void impose_translation(TangentialProblem& problem, const Model& model, const St
 /// says nothing of what they do hold.
 double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const ContactState& before) {
   if (before.energy == 0.0) return 0.0;
-  const double load = friction.bound(pressure).sum() / friction.bound(before.pressure).sum();
+  const double load = friction.bound(pressure).sum() / friction.bound(before.normal.pressure).sum();
   const double cells = static_cast<double>((pressure > 0.0).count());
-  const double size = std::sqrt(cells / static_cast<double>((before.pressure > 0.0).count()));
+  const double size = std::sqrt(cells / static_cast<double>((before.normal.pressure > 0.0).count()));
   return before.energy * std::min(1.0, load * load / size);
 }
 
@@ -173,8 +173,7 @@ void expand(TangentialSolution& solution, const Reduction& part) {
 
 /// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            TangentialProblem problem, const std::function<void(int, double)>& progress,
-                            double gap) {
+                            TangentialProblem problem, const Progress& progress, double gap) {
   const Elasticity elastic = elasticity(scene, model, part);
   if (scene.method == Method::coulomb) {
     return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
@@ -215,7 +214,7 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
   problem.start = before.traction;
   problem.energy_before = energy_before(model.friction, pressure, before);
-  const bool translations = has_translations(scene, model, pressure, before.pressure.size() == 0);
+  const bool translations = has_translations(scene, model, pressure, before.untouched());
   const LimitLoad unit =
       translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
   loads.moment_limit = translations ? unit.factor : moment_limit(model.grid, problem.friction_bound);
@@ -234,26 +233,26 @@ void require_carried(const Scene& scene, const Model& model, const Step& step, c
   if (!loads.carried()) refuse(scene, model, step, loads);
 }
 
-TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
-                                  const ContactState& before,
-                                  const std::function<void(int, double)>& progress, const StaggeredTarget& goal) {
-  const Reduction part = traction_part(scene, model, pressure, before.pressure);
-  note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
+FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads, const ArrayXd& pressure,
+                              const ContactState& before, const Progress& progress, const StaggeredTarget& goal) {
+  const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
+  const bool translations = loads.problem.force || loads.problem.displacement;
   TangentialProblem problem = reduced(loads.problem, part);
   problem.guess = part.restricted(goal.guess);
   TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
   expand(solution, part);
   loads.problem.friction_bound = model.friction.bound(pressure);
-  return solution;
+  return {std::move(loads), std::move(solution), omissions(scene, model, part, translations)};
 }
 
-void add_slip_without_friction(TangentialSolution& solution, const Scene& scene, const Model& model,
-                               const ArrayXd& bound, const ArrayXd& pressure, const ContactState& before) {
+ArrayXd complete_slip(ArrayXd slip, const TangentialSolution& solution, const Scene& scene,
+                      const Model& model, const ArrayXd& bound, const ArrayXd& pressure,
+                      const ContactState& before) {
   const auto free = ((pressure > 0.0) && (bound == 0.0)).replicate(2, 1);
-  if (!free.any()) return;
+  if (!free.any()) return slip;
   const bool rests = solution.twist == 0.0 && solution.displacement == std::array<double, 2>{};
-  if (scene.friction.is_frictionless() && rests && !moves_by_pressure(scene, model)) return;  // slip is zero
-  const Reduction part = traction_part(scene, model, pressure, before.pressure);
+  if (scene.friction.is_frictionless() && rests && !moves_by_pressure(scene, model)) return slip;  // zero
+  const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
   ArrayXd u = part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction)
                                                          : solution.traction);
   elasticity(scene, model, part).make(part.grid(), tangential_kernel())->apply(u, u);
@@ -264,7 +263,8 @@ void add_slip_without_friction(TangentialSolution& solution, const Scene& scene,
   u.head(cells) -= solution.displacement[0];
   u.tail(cells) -= solution.displacement[1];
   u -= solution.twist * rotation_field(model.grid);
-  solution.slip = free.select(u, solution.slip);
+  slip = free.select(u, slip);
+  return slip;
 }
 
 }  // namespace slipstick::solver

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
+#include <vector>
 
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/limit_load.hpp"
@@ -28,17 +28,23 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
 /// Throws InputError for gross slip, with what the contact carries and how it would slide.
 void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads);
 
-/// The tractions of a step under its pressure, on the whole grid; note_omissions() is told what was left out.
-/// Moves what only the solve needs out of loads.problem. goal: where a turn under full coupling wants less
-/// than all. progress: called now and then.
-TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads,
-                                  const Eigen::ArrayXd& pressure, const ContactState& before,
-                                  const std::function<void(int iteration, double change)>& progress,
-                                  const StaggeredTarget& goal = {});
+/// Tractions on the whole grid, the loads that they carry, and what the model leaves out to find them.
+struct FoundTractions {
+  LoadStep
+      loads;  ///< without the fields of its problem that only the solve needs: initial_displacement, start
+  TangentialSolution solution;
+  std::vector<Omission> left_out;
+};
 
-/// The slip of the step in cells that are pressed and have no friction: no traction depends on it.
-void add_slip_without_friction(TangentialSolution& solution, const Scene& scene, const Model& model,
-                               const Eigen::ArrayXd& bound, const Eigen::ArrayXd& pressure,
-                               const ContactState& before);
+/// The tractions of a step under its pressure. goal: of a turn under full coupling.
+FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads,
+                              const Eigen::ArrayXd& pressure, const ContactState& before,
+                              const Progress& progress, const StaggeredTarget& goal = {});
+
+/// The slip of the step with that of cells that are pressed and have no friction; no traction depends on it.
+/// solution: tractions and motion of the step. bound: of friction in each cell.
+Eigen::ArrayXd complete_slip(Eigen::ArrayXd slip, const TangentialSolution& solution, const Scene& scene,
+                             const Model& model, const Eigen::ArrayXd& bound, const Eigen::ArrayXd& pressure,
+                             const ContactState& before);
 
 }  // namespace slipstick::solver

@@ -8,6 +8,7 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/elasticity/direct.hpp"
+#include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

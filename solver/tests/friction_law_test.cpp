@@ -107,7 +107,7 @@ TEST(FrictionLaw, FollowsMasingsRule) {
   scene.steps[1].torsion = MomentRatio{-0.7};
   std::vector<Solution> steps;
   SolveOptions options;
-  options.on_step = [&](const Solution& step) { steps.push_back(step); };
+  options.observer.step = [&](const Solution& step) { steps.push_back(step); };
   solve(scene, options);
   ASSERT_EQ(steps.size(), 2u);
   expect_same_tractions(steps[1], steps[0], -1.0);
@@ -266,7 +266,7 @@ TEST_F(FrictionMap, LetsCellsWithoutFrictionSlip) {
       scene, [](Index i, Index) { return i < 12 ? 0.0 : 1.0; }, scene.cells);
   std::vector<Solution> steps;
   SolveOptions options;
-  options.on_step = [&](const Solution& step) { steps.push_back(step); };
+  options.observer.step = [&](const Solution& step) { steps.push_back(step); };
   solve(scene, options);
   ASSERT_EQ(steps.size(), 2u);
   const Model model = make_model(scene);

@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "solver/step/describe_step.hpp"
+#include "solver/tests/model_units.hpp"
 
 namespace slipstick::solver {
 

@@ -87,7 +87,7 @@ double largest_error(solver::Scene scene, int cells) {
     largest = std::max(
         {largest, std::abs(errors.twist * oracle.twist_angle / twist), std::abs(errors.moment_limit)});
   };
-  solver::solve(scene, {.progress = {}, .on_step = compare_step});
+  solver::solve(scene, {.observer = {.step = compare_step}});
   return largest;
 }
 

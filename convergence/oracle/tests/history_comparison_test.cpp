@@ -27,12 +27,14 @@ struct State {
 std::vector<State> follow(const Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   std::vector<State> states;
-  solver::solve(scene, {.progress = {}, .on_step = [&](const Solution& solution) {
-                          EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-                          const OracleAnswer answer = history->advance(solution.loads);
-                          if (!answer.oracle) throw std::runtime_error(answer.reason);
-                          states.push_back({solution, *answer.oracle, compare(solution, *answer.oracle)});
-                        }});
+  solver::SolveOptions options;
+  options.observer.step = [&](const Solution& solution) {
+    EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+    const OracleAnswer answer = history->advance(solution.loads);
+    if (!answer.oracle) throw std::runtime_error(answer.reason);
+    states.push_back({solution, *answer.oracle, compare(solution, *answer.oracle)});
+  };
+  solver::solve(scene, options);
   if (states.size() != scene.steps.size()) throw std::runtime_error("the history stopped");
   return states;
 }
@@ -166,11 +168,12 @@ struct Ended {
 };
 Ended solve_straight(const Push& from, const Push& to, int steps) {
   Ended ended;
-  ended.solution = solver::solve(straight(from, to, steps),
-                                 {.progress = {}, .on_step = [&](const Solution& at) {
-                                    EXPECT_EQ(at.status, solver::Status::converged) << at.message;
-                                    if (at.loads.key != "step[0]") ended.lost += at.dissipated;
-                                  }});
+  solver::SolveOptions options;
+  options.observer.step = [&](const Solution& at) {
+    EXPECT_EQ(at.status, solver::Status::converged) << at.message;
+    if (at.loads.key != "step[0]") ended.lost += at.dissipated;
+  };
+  ended.solution = solver::solve(straight(from, to, steps), options);
   return ended;
 }
 

@@ -15,10 +15,10 @@ namespace {
 class CheckpointFile : public ScratchFolder {
  protected:
   CheckpointFile() {
-    state_.contact.pressure = Eigen::ArrayXd::LinSpaced(4, 1.0, 4.0);
+    state_.contact.normal.pressure = Eigen::ArrayXd::LinSpaced(4, 1.0, 4.0);
     state_.contact.traction = Eigen::ArrayXd::LinSpaced(8, 5.0, 12.0);
     state_.contact.slip = Eigen::ArrayXd::LinSpaced(8, 13.0, 20.0);
-    state_.normal.safeguards = {1, 2, 3, 4, "the first"};
+    state_.contact.normal.safeguards = {1, 2, 3, 4, "the first"};
     checkpoint_.write(state_, Json::array());
   }
 

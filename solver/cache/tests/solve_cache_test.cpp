@@ -56,7 +56,7 @@ TEST(SolveCache, ChangesNoBit) {
       for (std::size_t i = 0; i < scenes.size(); ++i) {
         SCOPED_TRACE(i);
         const double saved = cache->seconds_saved();
-        const Solution solution = solve(scenes[i], {.progress = {}, .cache = cache});
+        const Solution solution = solve(scenes[i], {.cache = cache});
         expect_the_same(solution, alone[i]);
         if (scenes[i].steps.size() > 1) continue;  // the seconds are those of the last
         EXPECT_GE(solution.seconds.total, cache->seconds_saved() - saved);
@@ -71,7 +71,7 @@ TEST(SolveCache, KeepsApartWhatIsRoundedOtherwise) {
   const Scene scene = paper_scene(64, 0.6);
   const auto rounded = [&](int direction, const std::shared_ptr<SolveCache>& shared) {
     std::fesetround(direction);
-    Solution solution = solve(scene, {.progress = {}, .cache = shared});
+    Solution solution = solve(scene, {.cache = shared});
     std::fesetround(FE_TONEAREST);
     return solution;
   };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "solver/contact/projected_gradient.hpp"
+#include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

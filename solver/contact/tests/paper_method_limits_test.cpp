@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/step/describe_step.hpp"
+#include "solver/tests/model_units.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

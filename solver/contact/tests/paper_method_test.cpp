@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/step/describe_step.hpp"
+#include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

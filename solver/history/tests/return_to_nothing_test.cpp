@@ -24,7 +24,7 @@ class Nothing : public SceneFile {
     for (const std::string& step : steps) text += "[[step]]\n" + step + "\n";
     std::vector<Solution> solved;
     SolveOptions options;
-    options.on_step = [&](const Solution& at) {
+    options.observer.step = [&](const Solution& at) {
       EXPECT_EQ(at.status, Status::converged) << at.loads.key << ": " << at.message;
       solved.push_back(at);
     };

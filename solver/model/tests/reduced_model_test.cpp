@@ -27,7 +27,7 @@ constexpr const char* kDiagonal = "one traction field";
 
 std::vector<std::string> left_out(const ModelSolution& solution) {
   std::vector<std::string> names;
-  for (const Omission& omission : solution.model.left_out) {
+  for (const Omission& omission : solution.left_out) {
     names.push_back(omission.what);
     EXPECT_FALSE(omission.why.empty()) << omission.what;
   }

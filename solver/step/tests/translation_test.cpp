@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/step/describe_step.hpp"
+#include "solver/tests/model_units.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"

@@ -1,16 +1,17 @@
-#include "solver/step/contact_state.hpp"
+#include "solver/history/history_state.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace slipstick::solver {
 
-StepEnd end_of(const Solution& solution) {
-  return {.twist = solution.twist_angle,
-          .displacement = solution.displacement,
-          .moment = solution.moment,
-          .force = solution.force,
-          .moment_limit = solution.moment_limit};
+StepEnd end_of(const LoadNumbers& numbers) {
+  return {.twist = numbers.twist_angle,
+          .displacement = numbers.displacement,
+          .moment = numbers.moment,
+          .force = numbers.force,
+          .moment_limit = numbers.moment_limit};
 }
 
 Quantities distance(const StepEnd& from, const StepEnd& to) {
@@ -51,6 +52,18 @@ Quantities OpenHistory::mesh() const {
                    std::min(small_stick.*number, kLoops * largest_small_stick.*number);
   }
   return open;
+}
+
+HistoryState restore_state(const HistoryState& kept, const Scene& scene, Index cells) {
+  const ContactState& at = kept.contact;
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
+  if (kept.finished == 0 || kept.finished >= steps || at.normal.pressure.size() != cells ||
+      at.traction.size() != 2 * cells || (at.slip.size() != 0 && at.slip.size() != 2 * cells)) {
+    throw std::invalid_argument("the state of a history is not one of this scene");
+  }
+  HistoryState state = kept;
+  state.contact.normal_load = step_of(scene, kept.finished - 1).normal;
+  return state;
 }
 
 }  // namespace slipstick::solver

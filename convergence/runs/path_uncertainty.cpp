@@ -1,21 +1,22 @@
-#include "solver/load_path.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
-#include "solver/history/load_parts.hpp"
+#include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/solve.hpp"
-#include "solver/step/contact_state.hpp"
 #include "solver/step/pressure.hpp"
+#include "solver/step/resolution.hpp"
 
-namespace slipstick::solver {
+namespace slipstick::convergence {
 namespace {
 
+using namespace solver;
 using Eigen::ArrayXXd;
 
 /// Cells along a side of the coarse grid, in the geometric mean: on 16 to 64 cells a path's error differs by
@@ -118,32 +119,31 @@ std::optional<Scene> on_few_cells(const Scene& scene) {
   return coarse;
 }
 
-/// The scene on few cells, its map of friction as means over them.
-std::optional<Scene> coarse_scene(const Scene& scene, const Model& model) {
+/// The scene on few cells, its map of friction as means over them. solution: of one of its steps.
+std::optional<Scene> coarse_scene(const Scene& scene, const Solution& solution) {
   std::optional<Scene> coarse = on_few_cells(scene);
-  if (!coarse || !model.friction.factors) return coarse;
-  const Grid grid = model.grid_in_m();
+  if (!coarse || !solution.friction.factors) return coarse;
+  const Grid& grid = solution.grid;
   const Grid few = make_model(*coarse).grid_in_m();
   std::array<double, 2> centre{};
   if (find_height_map(scene.surfaces) != nullptr) {  // samples are cut off at its far ends
     centre = {grid.x1(0) - 0.5 * grid.h1 - (few.x1(0) - 0.5 * few.h1),
               grid.x2(0) - 0.5 * grid.h2 - (few.x2(0) - 0.5 * few.h2)};
   }
-  coarse->friction.factors = model.friction.factors;
+  coarse->friction.factors = solution.friction.factors;
   coarse->friction = resampled(std::move(coarse->friction), grid, few, centre);
   return coarse;
 }
 
-/// The ends of the steps, as far as it goes.
+/// The ends of the steps up to the first that cannot be solved.
 std::vector<StepEnd> ends_of(const Scene& scene) {
   std::vector<StepEnd> ends;
+  SolveOptions options{.detail = Detail::loads};
+  options.observer.step = [&](const Solution& at) {
+    if (at.status == Status::converged) ends.push_back(end_of(at));
+  };
   try {
-    solve(scene, {.progress = {},
-                  .on_step =
-                      [&](const Solution& at) {
-                        if (at.status == Status::converged) ends.push_back(end_of(at));
-                      },
-                  .detail = Detail::loads});
+    solve(scene, options);
   } catch (const InputError&) {
     // Few cells carry a little less, or more parts slide on their way.
   }
@@ -159,18 +159,18 @@ void shorten(Scene& scene, std::size_t steps) {
 
 }  // namespace
 
-bool depends_on_path(const Scene& scene, const Model& model) {
+bool depends_on_path(const Scene& scene, bool coupled) {
   if (scene.method != Method::coulomb) return false;
   const bool one_pressure = std::ranges::all_of(
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
-  const bool similar = !model.pressure_coupling || !model.law->couples();
-  return !(one_pressure && similar && !model.forces && has_axis(scene));
+  const bool turned_only = std::ranges::none_of(scene.steps, brings_translation);
+  return !(one_pressure && !coupled && turned_only && has_axis(scene));
 }
 
-PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)
-    : matters_(depends_on_path(scene, model)) {
+PathUncertainty::PathUncertainty(const Scene& scene, const Solution& solution)
+    : matters_(depends_on_path(scene, solution.coupled)) {
   if (!matters_) return;
-  std::optional<Scene> coarse = coarse_scene(scene, model);
+  std::optional<Scene> coarse = coarse_scene(scene, solution);
   broke_off_ = !coarse;
   if (broke_off_) return;
   shorten(*coarse, kMaxPathSteps);
@@ -193,4 +193,23 @@ Quantities PathUncertainty::at(std::size_t step) const {
   return times(static_cast<double>(step + 1) / static_cast<double>(at_ends_.size()), at_ends_.back());
 }
 
-}  // namespace slipstick::solver
+Solution solve_with_path(const Scene& scene, SolveOptions options) {
+  if (options.detail != Detail::all) return solve(scene, options);
+  std::optional<PathUncertainty> path;
+  std::size_t k = options.resumed ? options.resumed->finished : 0;
+  options.observer.step = [&, observe = std::move(options.observer.step)](Solution& at) {
+    if (!path) {
+      Stopwatch watch(nullptr);
+      path.emplace(scene, at);
+      const double seconds = watch.lap();
+      at.seconds.setup += seconds;
+      at.seconds.total += seconds;
+    }
+    at.resolution = with_uncertainty(at, scene, k, at.resolution.mesh, path->at(k));
+    ++k;
+    if (observe) observe(at);
+  };
+  return solve(scene, options);
+}
+
+}  // namespace slipstick::convergence

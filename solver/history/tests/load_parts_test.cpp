@@ -1,17 +1,16 @@
-#include "solver/load_path.hpp"
+#include "solver/history/load_parts.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "solver/history/load_parts.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-class LoadPath : public SceneFile {
+class LoadParts : public SceneFile {
  protected:
   Solution solved(const std::string& steps, const std::vector<std::string>& overrides = {}) const {
     std::vector<std::string> keys{"grid.cells=[24,24]", "load.moment_ratio=0"};
@@ -28,7 +27,7 @@ class LoadPath : public SceneFile {
   }
 };
 
-TEST_F(LoadPath, PartsEndWithTheStepAndGoStraightToIt) {
+TEST_F(LoadParts, PartsEndWithTheStepAndGoStraightToIt) {
   Scene scene;
   scene.substeps = 4;
   const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
@@ -48,7 +47,7 @@ TEST_F(LoadPath, PartsEndWithTheStepAndGoStraightToIt) {
   EXPECT_EQ(parts.back().force, step.force);
 }
 
-TEST_F(LoadPath, TheNormalLoadComesFirstWhileTheOthersStay) {
+TEST_F(LoadParts, TheNormalLoadComesFirstWhileTheOthersStay) {
   Scene scene;
   scene.substeps = 4;
   const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
@@ -68,7 +67,7 @@ TEST_F(LoadPath, TheNormalLoadComesFirstWhileTheOthersStay) {
   EXPECT_EQ(parts[2].normal, 800.0);
 }
 
-TEST_F(LoadPath, AStepInPartsEndsAsStepsThatAreWrittenOut) {
+TEST_F(LoadParts, AStepInPartsEndsAsStepsThatAreWrittenOut) {
   const std::string tight = "solver.tolerance=1e-12";
   const Solution in_parts =
       solved("[[step]]\nforce = [50, 0]\n[[step]]\nforce = [30, 20]\n", {"solver.substeps=2", tight});
@@ -83,10 +82,10 @@ TEST_F(LoadPath, AStepInPartsEndsAsStepsThatAreWrittenOut) {
 }
 
 // A step that ends on its way has no answer: its numbers are not those of the part where it stopped.
-TEST_F(LoadPath, AStepThatBreaksOffHasNoAnswer) {
+TEST_F(LoadParts, AStepThatBreaksOffHasNoAnswer) {
   std::vector<Solution> steps;
   SolveOptions options;
-  options.on_step = [&](const Solution& at) { steps.push_back(at); };
+  options.observer.step = [&](const Solution& at) { steps.push_back(at); };
   const Scene scene = read(kShortScene + push_and_twist(1), {"solver.substeps=8", "solver.max_iterations=3"});
   solve(scene, options);
   const Solution& last = steps.back();
@@ -94,40 +93,6 @@ TEST_F(LoadPath, AStepThatBreaksOffHasNoAnswer) {
   EXPECT_THAT(last.message, testing::HasSubstr("part 1 of 8"));
   for (const double number : {last.twist_angle, last.moment, last.displacement[0], last.force[1], last.work})
     EXPECT_TRUE(std::isnan(number));
-}
-
-// Slip under a push lies along it; the twist that follows turns it.
-TEST_F(LoadPath, WhatFewPartsLeaveOpenIsStatedWhereSlipTurns) {
-  const Solution one = solved(push_and_twist(1));
-  const Solution many = solved(push_and_twist(32));
-  const double off = std::abs(one.twist_angle - many.twist_angle);
-  EXPECT_GT(off, 0.005 * many.twist_angle);
-  EXPECT_GT(one.resolution.path.twist, off);
-  EXPECT_LT(one.resolution.path.twist, 4.0 * off);
-  EXPECT_GE(one.resolution.absolute, one.resolution.path.twist);
-  const double shift = std::abs(one.displacement[0] - many.displacement[0]);
-  EXPECT_GT(one.resolution.path.displacement, shift);
-  // It falls like one over the number of parts, once there are many.
-  EXPECT_LT(solved(push_and_twist(1), {"solver.substeps=32"}).resolution.path.twist,
-            0.2 * one.resolution.path.twist);
-}
-
-TEST_F(LoadPath, ATwistOfASurfaceOfRevolutionHasNoPath) {
-  const std::string loop = "[[step]]\nmoment_ratio = 0.9\n[[step]]\nmoment_ratio = -0.4\n";
-  EXPECT_EQ(solved(loop).resolution.path.twist, 0.0);
-  EXPECT_GT(solved(loop, {"contact.coupling=\"pressure\"", "lower.young_modulus=70e9"}).resolution.path.twist,
-            0.0);
-}
-
-// Their gaps add up to that of one cone.
-TEST_F(LoadPath, ATwistOfConesOnOneAxisHasNoPath) {
-  const auto path = [&](const std::string& at) {
-    const std::string cone = "[[upper.shape]]\nshape = \"cone\"\nslope = 0.005\n";
-    const std::string text = with_surface("", cone + cone + "at = " + at + "\n");
-    return solve(read(text, {"grid.cells=[24,24]", "grid.extent=[2e-3,2e-3]"})).resolution.path.twist;
-  };
-  EXPECT_EQ(path("[0.0, 0.0]"), 0.0);
-  EXPECT_GT(path("[2e-4, 0.0]"), 0.0);
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "solver/history/history_state.hpp"
+#include "solver/model/model.hpp"
+#include "solver/step/solve_step.hpp"
+
+namespace slipstick::solver {
+
+/// Numbers that add up over the parts of a step: SI units, seconds.
+struct StepTotals {
+  double dissipated = 0.0;
+  double work = 0.0;
+  double operator_applications = 0.0;
+  double pressure_applications = 0.0;
+  Seconds seconds;
+};
+
+/// A step of a history, up to its end or to the part that did not converge.
+struct HistoryStep {
+  StepResult last;     ///< of the last part that was solved
+  StepTotals totals;   ///< of all parts that were solved
+  std::size_t solved;  ///< parts
+  std::size_t parts;   ///< of which the step consists
+  /// Of the history, as it enters the last part, with the end of that part.
+  HistoryState state;
+
+  bool converged() const { return last.status == Status::converged; }
+  /// The state after the step.
+  HistoryState after() const;
+};
+
+/// Solves the step of a scene that follows a state, part by part (load_parts.hpp).
+HistoryStep solve_history_step(const Scene& scene, const Model& model, HistoryState before, Detail detail,
+                               const Progress& progress = {});
+
+/// The answer to a step of a scene in SI units. Where a part broke off, numbers at the end of the step are
+/// NaN.
+Solution to_si(HistoryStep step, const Scene& scene, const Model& model);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,191 @@
+#include "solver/step/solve_step.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "solver/contact/full_coupling.hpp"
+#include "solver/elasticity/random_rounding.hpp"
+#include "solver/model/memory_plan.hpp"
+#include "solver/step/grid_edge.hpp"
+#include "solver/step/pressure.hpp"
+#include "solver/step/tractions.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// Rounding of a sum over a million cells, relative to the sum of sizes.
+constexpr double kSumRounding = 1e-12;
+/// Rounding of the duality gap, in which sums cancel, relative to the energy.
+constexpr double kGapRounding = 1e-13;
+
+/// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and
+/// freezes slip directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to
+/// rounding. The other methods have stopped on the gap of the part of the grid that they solved; the whole
+/// grid's differs by rounding.
+CertificateBounds promised(const Scene& scene) {
+  const double loads = std::max(scene.tolerance, kSumRounding);
+  const double gap = scene.method == Method::paper ? std::numeric_limits<double>::infinity()
+                                                   : scene.tolerance + kGapRounding;
+  return {.gap = gap, .moment = loads, .force = loads, .friction_bound = loads};
+}
+
+RigidMotion moved(const RigidMotion& before, const TangentialSolution& tangential) {
+  return {before.delta1 + tangential.displacement[0], before.delta2 + tangential.displacement[1],
+          before.twist + tangential.twist};
+}
+
+/// ContactState::slip after a step that is not the first.
+ArrayXd slip_onwards(const ContactState& before, const SolvedStep& solved) {
+  const TangentialSolution& tangential = solved.tangential;
+  if ((solved.normal.pressure > 0.0 && before.normal.pressure == 0.0).any()) return {};
+  if (before.slip.size() == 0) return tangential.slip;
+  const ArrayXd onwards =
+      (tangential.stick == 0.0 && dot_products(before.slip, tangential.slip) > 0.0).cast<double>();
+  return tangential.slip + onwards.replicate(2, 1) * before.slip;
+}
+
+struct Found {
+  SolvedStep solved;
+  WorkNumbers work;
+  std::vector<Omission> left_out;
+};
+
+/// Pressure and tractions, each under the other.
+Found solve_coupled(const Scene& scene, const Model& model, const Step& step, const ContactState& before,
+                    const Progress& progress) {
+  const Reduction whole(model.grid);
+  Found found;
+  LoadStep& loads = found.solved.loads;
+  const CoupledProblem problem{
+      .gap = model.gap,
+      .traction = before.untouched() ? ArrayXd::Zero(2 * model.grid.cells()) : before.traction,
+      .tolerance = scene.tolerance,
+      .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
+      .solve_pressure =
+          [&](const ArrayXd& opening, const StaggeredTarget& goal) {
+            NormalSolution normal = find_pressure(scene, model, step, opening, goal, progress);
+            found.work.pressure_applications += finest_grid_applications(normal.grids);
+            found.work.safeguards += normal.safeguards;
+            return normal;
+          },
+      .solve_tractions =
+          [&](const ArrayXd& pressure, const StaggeredTarget& goal) {
+            loads = load_step(scene, model, step, pressure, before);
+            if (goal.gap > 0.0 && !loads.carried()) return TangentialSolution{};
+            require_carried(scene, model, step, loads);
+            FoundTractions tractions =
+                find_tractions(scene, model, std::move(loads), pressure, before, progress, goal);
+            loads = std::move(tractions.loads);
+            found.left_out = std::move(tractions.left_out);
+            found.work.operator_applications += finest_grid_applications(tractions.solution.grids);
+            found.work.safeguards += tractions.solution.safeguards;
+            return std::move(tractions.solution);
+          }};
+  CoupledSolution coupled = solve_fully_coupled(elasticity(scene, model, whole), model.grid, problem);
+  if (coupled.tangential.status == Status::converged) {
+    require_contact_within_grid(scene, model, step, coupled.normal, coupled.tangential.traction);
+  }
+  found.solved.normal = std::move(coupled.normal);
+  found.solved.tangential = std::move(coupled.tangential);
+  found.work.turns = coupled.turns;
+  return found;
+}
+
+Found solve_in_sequence(const Scene& scene, const Model& model, const Step& step, const ContactState& before,
+                        const Progress& progress) {
+  Stopwatch watch(model.cache.get());
+  Found found;
+  WorkNumbers& work = found.work;
+  NormalSolution& normal = found.solved.normal;
+  if (before.untouched() || before.normal_load != step.normal) {
+    normal = find_pressure(scene, model, step, {}, {}, progress);
+    work.pressure_applications = finest_grid_applications(normal.grids);
+    work.safeguards = normal.safeguards;
+    require_contact_within_grid(scene, model, step, normal);
+  } else {
+    normal = before.normal;
+  }
+  work.seconds.pressure = watch.lap();
+  LoadStep loads = load_step(scene, model, step, normal.pressure, before);
+  require_carried(scene, model, step, loads);
+  FoundTractions tractions =
+      find_tractions(scene, model, std::move(loads), normal.pressure, before, progress);
+  work.operator_applications = finest_grid_applications(tractions.solution.grids);
+  work.safeguards += tractions.solution.safeguards;
+  work.seconds.traction = watch.lap();
+  found.solved.loads = std::move(tractions.loads);
+  found.solved.tangential = std::move(tractions.solution);
+  found.left_out = std::move(tractions.left_out);
+  return found;
+}
+
+/// Adds predictions, and the numbers of the two solves.
+WorkNumbers work_of(const Scene& scene, const Model& model, const SolvedStep& solved, WorkNumbers work) {
+  const bool pressed = work.pressure_applications > 0.0;
+  const CandidateFraction parts{pressed ? solved.normal.part : 0.0, solved.tangential.part};
+  work.bytes = predicted_memory(scene, model).solver;
+  work.predicted_bytes = predicted_memory(scene, model, parts).total();
+  work.threads = model.threads;
+  work.iterations = solved.tangential.iterations;
+  work.change = solved.tangential.change;
+  work.grids = solved.tangential.grids;
+  work.pressure_iterations = solved.normal.iterations;
+  work.pressure_complementarity = solved.normal.complementarity;
+  return work;
+}
+
+std::string message_of(const SolvedStep& solved) {
+  std::string message;
+  if (!solved.normal.message.empty()) message = "pressure: " + solved.normal.message;
+  if (!solved.tangential.message.empty())
+    message += (message.empty() ? "traction: " : "; traction: ") + solved.tangential.message;
+  return message;
+}
+
+}  // namespace
+
+StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& step,
+                      const ContactState& before, const Progress& progress) {
+  Stopwatch watch(model.cache.get());
+  const KeptRounding rounding;  // solves that draw their rounding change it
+  Found found = model.shear_coupling && model.law->couples()
+                    ? solve_coupled(scene, model, step.loads, before, progress)
+                    : solve_in_sequence(scene, model, step.loads, before, progress);
+  StepResult result;
+  result.step = step;
+  result.solved = std::move(found.solved);
+  result.left_out = std::move(found.left_out);
+  SolvedStep& solved = result.solved;
+  TangentialSolution& tangential = solved.tangential;
+  result.work = work_of(scene, model, solved, std::move(found.work));
+  result.motion = moved(before.motion, tangential);
+  const ArrayXd onwards = before.untouched() ? ArrayXd() : slip_onwards(before, solved);
+  result.numbers = describe_step(scene, model, step, solved, result.motion,
+                                 before.untouched() ? tangential.slip : onwards);
+  result.message = message_of(solved);
+  if (solved.normal.status == Status::converged && tangential.status == Status::converged) {
+    result.message = violated_bounds(result.numbers.quality.certificate, promised(scene));
+    if (result.message.empty()) result.status = Status::converged;
+  }
+  if (step.detail == Detail::all) {
+    tangential.slip = complete_slip(std::move(tangential.slip), tangential, scene, model,
+                                    solved.loads.problem.friction_bound, solved.normal.pressure, before);
+  }
+  result.work.seconds.total = watch.lap();
+  return result;
+}
+
+ContactState contact_after(const ContactState& before, const StepResult& step) {
+  const SolvedStep& solved = step.solved;
+  return {.normal = solved.normal,
+          .normal_load = step.step.loads.normal,
+          .traction = solved.tangential.traction,
+          .slip = before.untouched() ? solved.tangential.slip : slip_onwards(before, solved),
+          .motion = step.motion,
+          .energy = std::max(solved.loads.problem.energy_before, step.numbers.quality.certificate.energy)};
+}
+
+}  // namespace slipstick::solver
