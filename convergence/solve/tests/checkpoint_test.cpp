@@ -19,7 +19,7 @@ class CheckpointFile : public ScratchFolder {
     state_.contact.traction = Eigen::ArrayXd::LinSpaced(8, 5.0, 12.0);
     state_.contact.slip = Eigen::ArrayXd::LinSpaced(8, 13.0, 20.0);
     state_.contact.normal.safeguards = {1, 2, 3, 4, "the first"};
-    checkpoint_.write(state_, Json::array());
+    checkpoint_.write(state_, {});
   }
 
   const std::filesystem::path file_ = folder_ / "checkpoint.h5";
@@ -28,7 +28,7 @@ class CheckpointFile : public ScratchFolder {
 };
 
 TEST_F(CheckpointFile, KeepsEachSafeguardsCount) {
-  const solver::Safeguards kept = checkpoint_.read()->state->normal.safeguards;
+  const solver::Safeguards kept = checkpoint_.read()->state->contact.normal.safeguards;
   EXPECT_EQ(kept.second_solves, 1);
   EXPECT_EQ(kept.halvings, 2);
   EXPECT_EQ(kept.gradient_steps, 3);
