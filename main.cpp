@@ -44,7 +44,7 @@ void complain(const std::exception& error, const Ranks& ranks) {
   if (ranks.first()) std::cerr << plain_text("slipstick: " + failure_text(error)) << '\n';
 }
 
-/// Writes beside an error that is said in any case.
+/// Best-effort write before an error is rethrown.
 void keep(const std::function<void()>& write, const Ranks& ranks) {
   try {
     write();
@@ -86,8 +86,8 @@ int run_command(const Command& command, const CLI::App& parsed, const std::strin
   return exit_code;
 }
 
-/// Adds the command that the line begins with, or all where it begins with none: for --help, for what is
-/// misspelled, and for the reference. Half a start went into options of commands that nobody had asked for.
+/// Adds the command that the line begins with. Where it begins with none, adds all of them, for --help, for
+/// misspelled commands and for the reference. Building every command's options doubles the start-up time.
 std::vector<Command> add_commands(CLI::App& app, std::string_view first_word, const Ranks& ranks) {
   using namespace slipstick;
   const auto add_solve = [&ranks](CLI::App& to) { return convergence::add_solve_command(to, ranks); };

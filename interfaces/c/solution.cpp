@@ -39,7 +39,7 @@ namespace {
 using convergence::Json;
 using solver::Scene;
 
-/// What a call of slipstick_solve() asks for.
+/// The arguments of slipstick_solve().
 struct Request {
   solver::SettingsText settings;
   std::vector<std::string> overrides;
@@ -48,25 +48,25 @@ struct Request {
   void* user;
 };
 
-/// Solves run side by side. A solve that reads files by HDF5's library or changes FFTW's wisdom, which the
-/// process has once, runs alone. A forked process, which has no other threads, gets a new lock.
+/// Solves run concurrently. A solve that reads files by HDF5's library or changes FFTW's wisdom, of which the
+/// process has one each, excludes all others. A forked process has no other threads and gets a new lock.
 std::shared_mutex* solving = new std::shared_mutex;
-class Turn {
+class PlannerLock {
  public:
-  explicit Turn(bool alone) {
-    if (alone) {
-      alone_ = std::unique_lock(*solving);
+  explicit PlannerLock(bool exclusive) {
+    if (exclusive) {
+      exclusive_ = std::unique_lock(*solving);
     } else {
-      beside_ = std::shared_lock(*solving);
+      shared_ = std::shared_lock(*solving);
     }
   }
 
  private:
-  std::shared_lock<std::shared_mutex> beside_;
-  std::unique_lock<std::shared_mutex> alone_;
+  std::shared_lock<std::shared_mutex> shared_;
+  std::unique_lock<std::shared_mutex> exclusive_;
 };
 
-bool goes_alone(const Scene& scene) {
+bool needs_exclusive(const Scene& scene) {
   const bool reads_files = convergence::input_files(scene).size() > 1;
   return reads_files || scene.rounding_seed != 0;
 }
@@ -84,7 +84,7 @@ struct PlansOfOneRounding {
 std::mutex planning;
 void begin_planning() { planning.lock(); }
 void end_planning() { planning.unlock(); }
-void be_alone() {
+void renew_lock() {
   end_planning();
   solving = new std::shared_mutex;
 }
@@ -92,7 +92,7 @@ void share_planner() {
   static std::once_flag done;
   std::call_once(done, [] {
     fftw_set_planner_hooks(begin_planning, end_planning);
-    pthread_atfork(begin_planning, end_planning, be_alone);
+    pthread_atfork(begin_planning, end_planning, renew_lock);
   });
 }
 
@@ -183,7 +183,7 @@ int solve(const Request& request, slipstick_solution& kept) {
   share_planner();
   const Scene scene =
       solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
-  const Turn turn(goes_alone(scene));
+  const PlannerLock lock(needs_exclusive(scene));
   const bool accurate = request.accuracy != 0;
   const PlansOfOneRounding plans{scene.rounding_seed != 0};
   const std::string why =
@@ -294,7 +294,7 @@ int slipstick_solution_write(const slipstick_solution* solution, const char* fil
     solver::require_field_format(file);
     if (solution->columns.empty())
       throw std::invalid_argument("the solution has no fields; allowed: one with fields");
-    const c::Turn turn(true);
+    const c::PlannerLock lock(true);
     solver::write_fields(file, solution->grid, solution->columns, solution->pressure);
   });
 }

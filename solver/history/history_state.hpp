@@ -21,9 +21,9 @@ StepEnd end_of(const LoadNumbers& numbers);
 /// How far two ends lie apart.
 Quantities distance(const StepEnd& from, const StepEnd& to);
 
-/// The mesh error of the steps so far. Errors of steps add up, whatever their signs. But a contact forgets a
-/// loop once a larger one closes: the sum is bounded by twice the largest size that was reached, at the
-/// relative error of the worst step.
+/// The mesh error of the steps so far. Absolute errors of steps add up. A larger loop erases a smaller one
+/// from the contact's memory, so that the sum is bounded by twice the largest size that was reached, times
+/// the relative error of the worst step.
 struct OpenHistory {
   Quantities sum;
   Quantities largest;
@@ -42,13 +42,13 @@ struct OpenHistory {
 /// The state of a history at the end of a step. From it the next step gives the same digits as without a
 /// break.
 struct HistoryState {
-  std::size_t finished = 0;  ///< steps, those of earlier cycles included
+  std::size_t finished = 0;  ///< number of finished steps, in all cycles
   ContactState contact;
   StepEnd end;
   OpenHistory open;
 };
 
-/// A state that was kept, checked against the scene that goes on from it. cells: of the scene's grid. Throws
+/// A stored state, checked against the scene that resumes from it. cells: of the scene's grid. Throws
 /// std::invalid_argument for a state of another scene.
 HistoryState restore_state(const HistoryState& kept, const Scene& scene, Index cells);
 

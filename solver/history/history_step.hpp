@@ -20,8 +20,8 @@ struct HistoryStep {
   StepResult last;     ///< of the last part that was solved
   StepTotals totals;   ///< of all parts that were solved
   std::size_t solved;  ///< parts
-  std::size_t parts;   ///< of which the step consists
-  /// Of the history, as it enters the last part, with the end of that part.
+  std::size_t parts;   ///< parts of the whole step
+  /// The history's state at the start of the last part, with the loads at the end of it.
   HistoryState state;
 
   bool converged() const { return last.status == Status::converged; }

@@ -72,7 +72,7 @@ SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
                                             scene.cell_traction);
 }
 
-/// The bodies' law, and on top of it that of the layer between them.
+/// The law of the bodies and of the layer between them.
 SharedLaw make_law(const Scene& scene, const Model& model) {
   const SharedLaw bodies = law_of_bodies(scene, model);
   const auto& [kind, values] = scene.layer;

@@ -19,8 +19,8 @@ class OutOfMemory : public InputError {
 /// has a limit. Infinite where nothing says. `root` stands before /proc and /sys.
 double available_memory(const std::filesystem::path& root = "/");
 
-/// Blocks of up to some MiB that are freed stay with this process for the next ones, where its library can be
-/// told so: to give pages back and ask for them again takes a tenth of a quick solve. For a program's start.
+/// Keeps freed blocks of up to some MiB in this process, where the C library has a setting for it: returning
+/// pages to the system and mapping them again takes a tenth of a quick solve. Called at program start.
 void keep_freed_blocks();
 
 /// "512 MiB", "1.5 GiB": three digits.

@@ -16,15 +16,16 @@
 namespace slipstick::solver {
 namespace {
 
-/// Doubles a cell of the whole grid that a solve holds beside operators and workspaces. Measured, as all that
-/// follow, by convergence/solve/tests/memory_test.py.
+/// Doubles a cell of the whole grid that a solve holds in addition to operators and workspaces. All of these
+/// numbers are measured by convergence/solve/tests/memory_test.py.
 constexpr double kFieldsHeld = 3.2;
 /// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
 constexpr double kFieldsOfPart = 2.0;
-/// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
+/// Doubles a cell of the whole grid before and after the solve, without operators and workspaces.
 constexpr double kFieldsAround = 12.0;
-constexpr double kFieldsAroundPressure = 9.3;  ///< alone, on the whole grid
-/// Doubles a cell of the whole grid that a pressure's solve holds beside operators and workspaces.
+constexpr double kFieldsAroundPressure = 9.3;  ///< where only the pressure is solved
+/// Doubles a cell of the whole grid that the solve of a pressure holds in addition to operators and
+/// workspaces.
 constexpr double kFieldsOfPressure = 1.4;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
 constexpr double kFieldsOfOthers = 21.0;
@@ -91,8 +92,7 @@ Memory predicted_memory(const Scene& scene, const Model& model, const CandidateF
   const double normal = scene.pressure == PressureModel::solved
                             ? on_part.newton_bytes(part, normal_kernel(), parts.pressure)
                             : 0.0;
-  // The pressure has the gap's mirrors, unless a file brings it; its tangential displacement has not those of
-  // torsion.
+  // A solved pressure has the mirrors of the gap. Its tangential displacement lacks the mirrors of torsion.
   const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;

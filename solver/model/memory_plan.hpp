@@ -10,8 +10,8 @@ struct Memory {
   double fields;  ///< the model's and the solution's, and the program itself
   double total() const { return solver + fields; }
 };
-/// Parts of the cells that Newton's method looks at for pressures and for tractions: known when coarser grids
-/// are solved.
+/// Fractions of the cells that are candidates for contact and for friction in Newton's method. They are known
+/// once the coarser grids are solved.
 struct CandidateFraction {
   double pressure = 1.0;
   double tractions = 1.0;
@@ -20,9 +20,9 @@ Memory predicted_memory(const Scene& scene, const Model& model, const CandidateF
 /// Throws OutOfMemory where that does not fit.
 void require_memory(const Scene& scene, const Model& model, const CandidateFraction& parts);
 
-/// The same for the files that the scene names, of which a table is held as a whole while it is read,
+/// The same for the tables that the scene names: each is held as a whole while it is read.
 void require_memory_for_files(const Scene& scene);
-/// and for what is held on a grid before and after the solve.
+/// The same for the fields that a grid needs before and after the solve.
 void require_memory_around(const Scene& scene, const Grid& grid);
 
 }  // namespace slipstick::solver

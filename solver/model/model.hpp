@@ -42,7 +42,7 @@ struct Dimensionless {
   double stress_unit = 1.0;  ///< Pa
   Grid grid{};
   ElasticPair pair{};  ///< the bodies, or the layers that are bonded to them
-  SharedLaw law;       ///< of the bodies, and of what lies on and between them
+  SharedLaw law;       ///< of the bodies, their coatings and the layer between them
   FrictionLaw friction;
   bool hertzian = false;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
   bool pressure_coupling = false;  ///< K13, K23 enter
@@ -63,7 +63,7 @@ struct Model : Dimensionless {
   Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
   std::optional<HertzContact>
       hertz;                    ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
-  bool shear_coupling = false;  ///< K31, K32 enter, beside K13 and K23
+  bool shear_coupling = false;  ///< K31 and K32 enter too
   bool forces = false;          ///< some step brings a tangential force or displacement
   Reduction pressure_part;      ///< of the grid, on which the pressure is found
   int threads = 1;              ///< that solve it

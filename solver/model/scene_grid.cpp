@@ -16,8 +16,8 @@ constexpr double kExtentMarginCells = 2.0;
 /// Largest ratio of a cell's sides. Beyond it every method crawls.
 constexpr double kMaxSlender = 1000.0;
 
-/// Half the sides of what is known before the solve to lie in the contact: that of one shape, and where the
-/// nearest of several shapes is lowest.
+/// Half the sides of a rectangle that lies in the contact for certain, before it is solved: the contact of a
+/// single shape, or the lowest points of several shapes of which the nearest counts.
 std::array<double, 2> least_half_sides(const Scene& scene, const std::vector<Surface>& surfaces,
                                        const std::optional<std::array<double, 2>>& expected) {
   const bool hertz =
@@ -28,7 +28,7 @@ std::array<double, 2> least_half_sides(const Scene& scene, const std::vector<Sur
   return pressed && expected ? half_sides_below(surfaces, Combine::nearest, 0.0) : std::array<double, 2>{};
 }
 
-/// Looks for what needs no solve; see require_contact_within_grid().
+/// Refuses extents that are too small for certain; require_contact_within_grid() refuses the others.
 void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
                     const std::optional<std::array<double, 2>>& expected) {
   const auto least = least_half_sides(scene, surfaces, expected);

@@ -21,8 +21,8 @@ bool has_translations(const Scene& scene, const Model& model, const Eigen::Array
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
                         const Eigen::ArrayXd& before = {});
 
-/// The parts of the problem that a solve leaves out, with the reasons: those of the scene, of traction_part()
-/// and of has_translations().
+/// The parts of the problem that a solve leaves out, with the reasons: omissions of the scene, of
+/// traction_part() and of has_translations().
 std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part,
                                 bool translations);
 

@@ -22,13 +22,13 @@ using Matrix = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// Bodies that run into each other by less than this part of their displacement are open: a pressure solved
 /// to a complementarity gap of 1e-10 has displacements no better.
 constexpr double kOpen = 1e-5;
-/// Cells along the longer side in a trial solve for a sufficient extent: they tell the contact's size to a
-/// few hundredths.
+/// Cells along the longer side in a trial solve for a sufficient extent. They give the contact's size within
+/// a few hundredths.
 constexpr Index kTrialCells = 64;
 /// Factor of the extent that is proposed where the trials find the present one enough: they know no shear,
 /// and under full coupling shear widens the contact.
 constexpr double kShearReaches = 1.25;
-/// Each trial doubles the extent. A surface that goes on beyond the last one has no end.
+/// Each trial doubles the extent. A contact beyond the last one is taken as unbounded.
 constexpr int kTrials = 8;
 
 bool reaches_edge(const Grid& grid, const ArrayXd& pressure) {
@@ -45,7 +45,7 @@ Grid surroundings(const Scene& scene, const Model& model, double approach) {
   std::vector<Surface> surfaces;
   for (const Surface& surface : scene.surfaces) {
     if (scene.combine == Combine::sum && surface.shape == Shape::roughness && scene.surfaces.size() > 1) {
-      // Where it is highest, the other shapes may lie so much lower.
+      // Where the roughness is highest, the other shapes may lie lower by its range.
       const ArrayXd heights = roughness_heights(to_dimensionless(surface, model.length_unit).roughness, grid);
       depth += heights.maxCoeff() - heights.minCoeff();
     } else {
@@ -171,12 +171,12 @@ std::optional<std::array<double, 2>> sufficient_extent(Scene scene, const Model&
   return std::nullopt;
 }
 
-/// What a scene may say instead.
+/// The allowed values of grid.extent, in words.
 std::string allowed(const Scene& scene, const Model& model, const Step& step) {
   const std::string ends = "or upper.ends_at_grid_edge = true, where the body ends there";
   if (const Surface* const map = find_height_map(scene.surfaces)) {
     return fmt::format(
-        "a height map that goes on beyond the contact, which reaches the outermost points of {}; {}",
+        "a height map that is larger than the contact, which reaches the outermost points of {}; {}",
         map->file.string(), ends);
   }
   if (scene.pressure == PressureModel::file) {
@@ -185,7 +185,7 @@ std::string allowed(const Scene& scene, const Model& model, const Step& step) {
         scene.pressure_file.string(), ends);
   }
   const auto extent = extent_of(model);
-  const std::string cut = fmt::format("the contact goes on beyond the grid's edge under {} N", *step.normal);
+  const std::string cut = fmt::format("the contact extends beyond the grid's edge under {} N", *step.normal);
   if (const auto enough = sufficient_extent(scene, model, step)) {
     std::array<double, 2> sides{std::max((*enough)[0], extent[0]), std::max((*enough)[1], extent[1])};
     if (sides == extent) sides = {kShearReaches * sides[0], kShearReaches * sides[1]};

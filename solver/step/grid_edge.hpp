@@ -5,12 +5,12 @@
 
 namespace slipstick::solver {
 
-/// Throws InputError (grid.extent, with what would be enough) for a pressure that the grid's edge cuts off:
-/// where, on the same cells continued beyond the grid, the bodies would run into each other. Where nothing
-/// does, the answer is that of any larger grid, even if the contact reaches the outermost cells. A height map
-/// and a pressure file say nothing of what lies beyond: of these the outermost cells have to be free. Nothing
-/// is asked where the scene says that the body ends there (upper.ends_at_grid_edge). step: whose normal load
-/// the pressure carries. traction: 2*cells values that open the gap, under full coupling; empty: none do.
+/// Throws InputError (grid.extent, with a sufficient one) for a pressure that the grid's edge cuts off: on
+/// the same cells continued beyond the grid, the bodies would overlap. Where they do not, the answer is the
+/// same on any larger grid, even if the contact reaches the outermost cells. A height map and a pressure file
+/// do not define the surroundings of the grid: under these the outermost cells have to be free. Bodies that
+/// end at the grid's edge (upper.ends_at_grid_edge) are not checked. step: gives the normal load of the
+/// pressure. traction: 2*cells values that open the gap, under full coupling; empty: none.
 void require_contact_within_grid(const Scene& scene, const Model& model, const Step& step,
                                  const NormalSolution& normal, const Eigen::ArrayXd& traction = {});
 

@@ -15,8 +15,8 @@ namespace {
 
 /// A pressure file's load may differ by this part from load.normal; more is taken for a mistake in units.
 constexpr double kLoadTolerance = 1e-2;
-/// Complementarity gap of the pressure, unless the scene asks for a better certificate of the tractions: then
-/// the pressure is as good.
+/// Complementarity gap of the pressure. A smaller tolerance of the scene, for the certificate of the
+/// tractions, holds for the pressure too.
 constexpr double kPressureTolerance = 1e-10;
 
 Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
@@ -53,7 +53,7 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
 NormalSolution solved_pressure(const Scene& scene, const Model& model, double normal_load,
                                const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
                                const Progress& progress) {
-  // Shear opens the gap as it likes.
+  // The opening by shear has none of the symmetries of the gap.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
   Eigen::ArrayXd gap;  // where it is not the model's

@@ -17,7 +17,7 @@ struct Area {
   std::array<double, 2> sides{};    ///< of cells that look along x1, x2
   double mean = 0.0;                ///< of the field
   double edge = 0.0;                ///< of the field along the outline
-  std::array<double, 2> at_edge{};  ///< means along the outline of what else is looked for there
+  std::array<double, 2> at_edge{};  ///< means of at_edge(cell) along the outline
 };
 
 /// field(cell): its value there; at_edge(cell): further values, where a side of the cell looks outwards.
@@ -68,8 +68,8 @@ double bound_at_centre(const Grid& grid, const LoadStep& loads) {
                  : 0.0;
 }
 
-/// The twist that a mesh leaves open where the stick area is small. limit_error: relative, of the mesh's
-/// limit load beside a load that is no ratio of it.
+/// The twist that a mesh leaves open where the stick area is small. limit_error: relative error of the mesh's
+/// limit load; 0 where the load is a ratio of that limit.
 double open_twist(const Grid& grid, const LoadStep& loads, double limit_error) {
   const double bound = bound_at_centre(grid, loads);
   if (!(bound > 0.0) || loads.limit.sliding.twist == 0.0) return 0.0;
@@ -106,7 +106,7 @@ constexpr double kSharpEdge = 0.2;
 /// Under another law than Coulomb's, whose sum over the cells no normal load fixes, where it has a kink, over
 /// the power 1.5. Set by limit moments of spheres under capped and power laws on 32 to 200 cells.
 constexpr double kKink = 0.35;
-/// Relative error of a bonded punch's stiffness over that of its area: it grows like the radius cubed on
+/// Relative error of a bonded punch's stiffness over the error of its area: it grows like the radius cubed on
 /// half-spaces, like its fourth power on a thin layer, and no faster on a thicker one.
 constexpr double kStiffnessByArea = 1.5;
 constexpr double kStiffnessByAreaOnLayer = 2.0;
@@ -126,7 +126,7 @@ std::array<double, 2> sticking_at(const TangentialSolution& tangential, const Ar
   return {1.0, (q1 * q1 + q2 * q2) / (bound[cell] * bound[cell])};
 }
 
-/// How far a stick area may be off, relative, whose cube of the radius may be off by so much.
+/// Relative error of a stick area, from the relative error of the cube of its radius.
 double by_cubed_radius(double error) {
   const auto area = [](double cubed) { return std::cbrt(cubed * cubed); };
   return std::max(1.0 - area(std::max(0.0, 1.0 - error)), area(1.0 + error) - 1.0);
@@ -165,7 +165,7 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double ring = slipping.cells / contact.outline;
   const double narrow = stuck + (1.0 - stuck) / (1.0 + std::pow(ring, 4));
   const bool is_coulomb = loads.is_coulomb;
-  const double sharp = is_coulomb ? edge : 0.0;  // a wide ring hides the edge but that of a face
+  const double sharp = is_coulomb ? edge : 0.0;  // a wide slip ring hides the edge, except of a flat face
   result.step = (errors.smooth + small) * cell * cell + sharp * kSharpEdge * cell +
                 std::max(narrow, sharp * sharp) * of_area + narrow * errors.beyond * of_side;
   const double kink = is_coulomb ? 0.0 : kKink * cell * std::sqrt(cell);

@@ -18,11 +18,12 @@ namespace slipstick::solver {
 ///   a^4. So the relative error is 3/2 dA/A, and on layers at most 2 dA/A, with the uncertainty that
 ///   counted_area() states. The same at the edge of a face, whatever slips. A slip ring, whose tractions are
 ///   known, hides the edge: one that is s cells wide leaves 1/(1 + s^4) of it;
-/// - where the friction follows another law than Coulomb's, no normal load fixes the sum of what it carries:
-///   its limit moment has the error of the counted area too, 3/2 dA/A where the bound does not fall towards
+/// - where the friction follows another law than Coulomb's, the normal load does not fix the sum of its
+/// bounds:
+///   the limit moment has the error of the counted area too, 3/2 dA/A where the bound does not fall towards
 ///   the edge, and up to 0.35 (h/r)^1.5 where it falls;
-/// - where a moment is imposed, that of a stick area that shrinks below a cell: the load that is missing to
-///   the limit tells the radius that the stick area should have, a_s^3 = 9 (M_lim - M)/(8 mu p), p the
+/// - where a moment is imposed, the error of a stick area that shrinks below a cell: the distance from
+///   the limit load gives the radius that the stick area should have, a_s^3 = 9 (M_lim - M)/(8 mu p), p the
 ///   pressure at the centre of sliding (Jaeger's superposition with a smooth pressure, dH = -p ds/s); the
 ///   twist grows like mu p ln(1/a_s)/(2 G) there, but on a mesh no further than to a_s of about 0.6 h;
 /// - where the load is no ratio of the mesh's own limit, what the error of that limit makes of the missing
@@ -31,9 +32,9 @@ namespace slipstick::solver {
 /// Constants that are no result of theory were set by exact answers of spheres, cones, powers and punches on
 /// 16 to 128 cells, on grids of any extent, at loads of 1e-6 to 1 - 1e-6 of the limit.
 ///
-/// Stick areas are off by what counting leaves open, and besides (stick_area): by a slip ring within cells
-/// that stick, which their tractions tell; by the contact's own area where the bound does not fall towards
-/// the edge; and by what the error of the limit makes of a_s.
+/// The error of a stick area is the uncertainty of counting it, and (stick_area) three more: a slip ring
+/// within cells that stick, which follows from their tractions; the error of the contact's area where the
+/// bound does not fall towards the edge; and the error of a_s by the error of the limit.
 ///
 /// contact_area: in any unit. The rest in the model's units (stresses over G, lengths over a cell), of the
 /// whole grid.

@@ -79,10 +79,9 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
                   times, factor * step.force[0], factor * step.force[1], factor * torsion, sliding));
 }
 
-/// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself
-/// leaves a force that nothing balances. Where all slips, the part of the pressure that is odd under half a
-/// turn bounds that force over mu times the load; it may be as large as what the tolerance leaves of the
-/// tractions anyway.
+/// The other methods solve torsion about the grid's origin only. The part of the pressure that is odd under
+/// half a turn leaves a force that nothing balances. Over mu times the load, that part bounds the force where
+/// all of the contact slips; it may be as large as the tolerance of the tractions.
 void require_centred(const Scene& scene, const ArrayXd& bound) {
   const double odd = 0.5 * (bound - bound.reverse()).abs().sum() / bound.sum();
   const double allowed = std::max(scene.tolerance, kMirrorRounding);
@@ -91,7 +90,7 @@ void require_centred(const Scene& scene, const ArrayXd& bound) {
       scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
       fmt::format(
           "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
-          "torsion about the origin alone, and {:.3g} of this pressure is odd (allowed: {:.3g})",
+          "torsion about the origin only, and {:.3g} of this pressure is odd (allowed: {:.3g})",
           odd, allowed));
 }
 
@@ -100,7 +99,7 @@ void require_centred(const Scene& scene, const ArrayXd& bound) {
                    "a law that is finite under the pressure of every cell");
 }
 
-/// The limit under a moment alone from that under a unit of it.
+/// The limit under a moment without force, from the limit under a unit moment.
 LimitLoad under_moment(LimitLoad unit, double moment) {
   const auto [delta1, delta2, twist] = unit.sliding;
   return {unit.factor / std::abs(moment),
@@ -134,8 +133,8 @@ void impose_translation(TangentialProblem& problem, const Model& model, const St
   }
 }
 
-/// An energy goes with the square of the loads over the contact's size: what the bounds cannot hold any more
-/// says nothing of what they do hold.
+/// Energy scales with the square of the loads over the contact's size: the energy of the states before is
+/// reduced to the part that the friction bounds can still hold.
 double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const ContactState& before) {
   if (before.energy == 0.0) return 0.0;
   const double load = friction.bound(pressure).sum() / friction.bound(before.normal.pressure).sum();

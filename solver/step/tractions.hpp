@@ -11,7 +11,7 @@
 
 namespace slipstick::solver {
 
-/// A step's tangential problem, and what its contact can carry.
+/// A step's tangential problem, and the largest loads that its contact can carry.
 struct LoadStep {
   TangentialProblem problem;
   double moment_limit;     ///< over the cell area, without force
@@ -25,10 +25,11 @@ struct LoadStep {
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const Eigen::ArrayXd& pressure,
                    const ContactState& before);
 
-/// Throws InputError for gross slip, with what the contact carries and how it would slide.
+/// Throws InputError for gross slip, with the limit loads of the contact and the motion in which it would
+/// slide.
 void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads);
 
-/// Tractions on the whole grid, the loads that they carry, and what the model leaves out to find them.
+/// Tractions on the whole grid, the loads that they carry, and the omissions of the model.
 struct FoundTractions {
   LoadStep
       loads;  ///< without the fields of its problem that only the solve needs: initial_displacement, start

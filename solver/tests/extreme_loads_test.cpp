@@ -108,7 +108,7 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
 }
 
 // Nearly everything sticks, and a bonded contact is linear: half the load, half of everything. Only cells
-// whose bound is next to nothing slip, and carry next to nothing.
+// with a tiny bound slip, and carry little.
 TEST_P(ExtremeLoads, NextToNoneAreLinear) {
   const TangentialSolution larger = solve(problem(1e-8));
   for (const double part : {1e-10, 1e-12}) {
@@ -127,8 +127,8 @@ TEST_P(ExtremeLoads, NextToNoneAreLinear) {
   }
 }
 
-// Dissimilar bodies with next to no friction slip nearly everywhere under their pressure alone: tractions
-// cannot be written to more digits than their gap asks for. A converged result is within its tolerance,
+// Dissimilar bodies with little friction slip nearly everywhere under their pressure: double precision cannot
+// represent tractions to a smaller gap. A converged result is within its tolerance,
 // by the gap or by its bound of second order.
 TEST(SmallFriction, BetweenDissimilarBodiesEndsAsItSays) {
   Scene scene = paper_scene(32, 0.5);

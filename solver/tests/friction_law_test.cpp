@@ -1,4 +1,4 @@
-// Friction that is not mu p: each law by its limits and by Coulomb's, maps, and what is refused.
+// Friction laws other than mu p: their limits, their agreement with Coulomb's law, maps and refusals.
 
 #include <gmock/gmock.h>
 

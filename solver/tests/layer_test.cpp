@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// A compliance of the layer like that of the half-spaces below the contact, in m/Pa.
+/// Compliance of the half-spaces below the contact, taken for the layer too, in m/Pa.
 const double kLikeBodies = paper::kContactRadius * 4.0 * (1.0 + paper::kPoissonRatio) / paper::kYoungModulus;
 
 const LawKind& winkler() { return law_kinds().front(); }
@@ -119,7 +119,7 @@ TEST(Layer, LetsTheContactGrowAndTurn) {
 /// So compliant a layer leaves the half-spaces' part of the displacements below this.
 constexpr double kBodiesPart = 1e-4;
 
-/// Winkler's foundation alone: p = (approach - gap)/c, and each cell turns by itself up to its friction.
+/// Winkler's foundation: p = (approach - gap)/c, and each cell turns by itself up to its friction.
 TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   const double compliance = 1e6 * kLikeBodies;
   Scene scene = paper_scene(32, 0.0);
@@ -164,8 +164,9 @@ Scene homogeneous(Scene scene, bool layer) {
   return scene;
 }
 
-/// What is left goes like the thickness of a thin layer, and like the third power of one over that of a thick
-/// one: the base answers a resultant by a translation, which changes no twist, and a moment like a dipole.
+/// The difference scales with the thickness of a thin layer, and with the inverse third power of a thick
+/// one's one: the base answers a resultant by a translation, which changes no twist, and a moment like a
+/// dipole.
 TEST(BondedLayer, GoesFromTheBaseToTheLayer) {
   for (const double modulus : {0.4, 3.0}) {
     const double base = solved_scene(homogeneous(coated_scene(1.0, modulus), false)).twist_angle;
@@ -208,7 +209,7 @@ TEST(BondedLayer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
   }
 }
 
-/// The grid is made for the softer of layer and base; the contact lies between those of both.
+/// The grid fits the softer of layer and base; the contact's size lies between the sizes on either of them.
 TEST(BondedLayer, NeedsNoExtent) {
   for (const auto& [thickness, modulus, poisson_ratio] :
        {std::array{0.02, 0.2, 0.5}, std::array{0.5, 0.1, 0.4}, std::array{0.3, 20.0, 0.0},

@@ -27,7 +27,7 @@ class RanksOfTheTests : public testing::Environment {
 auto* const kJoined = new RanksOfTheTests;
 const auto* const kEnvironment = testing::AddGlobalTestEnvironment(kJoined);
 
-/// Odd, prime and fast lengths, fewer rows than ranks, rows for some of the ranks alone.
+/// Odd, prime and fast lengths, fewer rows than ranks, rows for some of the ranks only.
 std::vector<Grid> grids() {
   return {{1, 1, 1.0, 1.0},   {9, 2, 1.0, 0.7},   {23, 31, 1.0, 1.3},
           {45, 46, 1.0, 1.0}, {64, 48, 1.0, 1.0}, {130, 7, 1.0, 1.0}};
@@ -38,7 +38,7 @@ auto values(Field& field) {
   return std::span(field.data(), static_cast<std::size_t>(field.size()));
 }
 
-/// Results of work(grid) where this rank has the grid alone, and where all of them share it.
+/// Results of work(grid) where this rank has the whole grid, and where all of them share it.
 template <typename Work>
 void expect_same_bits(const Work& work, const char* what, Grid grid) {
   const auto alone = work(grid);
@@ -155,7 +155,7 @@ TEST(RanksSweep, CountsAndSumsAsOneRank) {
   }
 }
 
-/// What this rank has sent so far.
+/// Bytes that this rank has sent so far.
 double sent_bytes() {
   const Ranks ranks = kJoined->ranks();
   return ranks.several() ? ranks.communicator().sent().bytes : 0.0;

@@ -17,7 +17,7 @@ class LoadParts : public SceneFile {
     keys.insert(keys.end(), overrides.begin(), overrides.end());
     return solve(read(kShortScene + steps, keys));
   }
-  /// A push, and a twist that is written out in so many steps.
+  /// A push, and a twist in a given number of steps.
   static std::string push_and_twist(int steps) {
     std::string text = "[[step]]\nforce = [50, 0]\n";
     for (int k = 1; k <= steps; ++k) {
@@ -81,7 +81,7 @@ TEST_F(LoadParts, AStepInPartsEndsAsStepsThatAreWrittenOut) {
   EXPECT_GT(in_parts.dissipated, written.dissipated);  // of both parts, not of the last one
 }
 
-// A step that ends on its way has no answer: its numbers are not those of the part where it stopped.
+// A step that stops in one of its parts has no answer: its numbers are NaN.
 TEST_F(LoadParts, AStepThatBreaksOffHasNoAnswer) {
   std::vector<Solution> steps;
   SolveOptions options;

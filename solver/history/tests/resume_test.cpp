@@ -7,7 +7,7 @@
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"
 
-/// Histories that break off and go on.
+/// Histories that are interrupted and resumed.
 namespace slipstick::solver {
 namespace {
 
@@ -63,7 +63,7 @@ class Resumed : public SceneFile {
     EXPECT_EQ(one.contact.energy, other.contact.energy) << at;
   }
 
-  /// The ends of steps, and the states handed on from each to the next.
+  /// The ends of steps, and the states between them.
   struct Steps {
     std::vector<Solution> ends;
     std::vector<HistoryState> states;
@@ -76,7 +76,7 @@ class Resumed : public SceneFile {
     return steps;
   }
 
-  /// Breaks off after each step but the last, at once or in the middle of the next, and goes on from there.
+  /// Interrupts a history after each step but the last, at its end or within the next step, and resumes it.
   static void expect_goes_on_alike(const Scene& scene) {
     const Steps whole = solve_all(scene, nullptr);
     ASSERT_EQ(whole.ends.back().status, Status::converged) << whole.ends.back().message;

@@ -6,7 +6,7 @@
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"
 
-/// Loads that fall to nothing or to next to nothing, and numbers that are next to nothing.
+/// Loads that fall to zero or nearly to zero, and numbers that nearly vanish.
 namespace slipstick::solver {
 namespace {
 
@@ -54,7 +54,7 @@ TEST_F(Nothing, IsLeftWhereAllStuck) {
   }
 }
 
-/// Next to nothing, the energy that is left is not much above the rounding of the energy before.
+/// Near zero load, the remaining energy is hardly above the rounding of the energy before.
 TEST_F(Nothing, IsReachedThroughTheRoundingOfEnergies) {
   for (const char* part : {"1.255e-4", "1.842e-4", "2.012e-4", "3e-4", "4.319e-4", "5.439e-4"}) {
     const auto steps = steps_of({"force = [1, 0]", fmt::format("force = [{}, 0]", part)},

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace testing;
 
-/// Linux's files about memory, in a folder that stands for its root.
+/// Linux's files about memory, below a folder that replaces the root.
 class AvailableMemory : public SceneFile {
  protected:
   void say(const std::string& file, const std::string& text) const {

@@ -61,7 +61,7 @@ std::string trimming(const ModelSolution& solution) {
   return text.str();
 }
 
-/// From the tractions, the pressure and the twist alone, on the whole grid.
+/// Computed from the tractions, the pressure and the twist, on the whole grid.
 Certificate recomputed(const Scene& scene, const ModelSolution& solution, OperatorKind kind) {
   const Model& model = solution.model;
   const ArrayXd& pressure = solution.normal.pressure;
@@ -270,7 +270,7 @@ TEST(PapersMethod, AgreesToItsTolerance) {
   }
 }
 
-/// Direct and dense sums are what the others are compared with.
+/// Direct and dense sums are the reference of the other operators.
 TEST(DirectAndDense, LeaveNoCellsOut) {
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
     Scene scene = paper_scene(12, 0.5);

@@ -1,4 +1,4 @@
-// Contacts that the grid's edge cuts off are refused; those that it does not are the same on every larger
+// Contacts that the grid's edge cuts off are refused; all others are the same on every larger
 // grid of the same cells.
 
 #include "solver/step/grid_edge.hpp"
@@ -47,7 +47,7 @@ std::string refusal(const Scene& scene) {
   return complaint([&] { solve_in_model_units(scene); });
 }
 
-/// The extent that a refusal tells to be enough.
+/// The sufficient extent in the message of a refusal.
 std::array<double, 2> extent_told(const std::string& message) {
   std::smatch match;
   const std::regex told(R"(allowed: \[([0-9.e+-]+), ([0-9.e+-]+)\])");

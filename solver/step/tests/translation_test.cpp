@@ -8,7 +8,7 @@
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
-/// Contacts that are pushed as well as turned, and those that turn about another point than the origin.
+/// Contacts that are pushed as well as turned, or turn about another point than the origin.
 namespace slipstick::solver {
 namespace {
 
@@ -16,7 +16,7 @@ using Eigen::ArrayXd;
 using testing::HasSubstr;
 using Pair = std::array<double, 2>;
 
-/// The paper's sphere over ten cells of contact radius, its axis where the test wants it.
+/// The paper's sphere over ten cells of contact radius, with its axis at a given point.
 Scene sphere(const Pair& at_cells, Index cells = 40) {
   const double h = paper::kContactRadius / 10.0;
   Scene scene = paper_scene(cells, 0.6);
@@ -34,7 +34,7 @@ ModelSolution solved(const Scene& scene) {
   return solution;
 }
 
-/// q_k at the images of all cells: image(i, j) is where cell (i, j) goes on an n x n grid.
+/// q_k at the images of all cells: image(i, j) is the image of cell (i, j) on an n x n grid.
 template <typename Image>
 ArrayXd moved(const ArrayXd& field, Index n, const Image& image) {
   ArrayXd result = ArrayXd::Zero(field.size());
@@ -80,7 +80,7 @@ TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
 
 // --- symmetries ---
 
-/// Half of what friction can carry along the angle, with or without a moment.
+/// Half of the limit force along the angle, with or without a moment.
 Scene pushed(double force_ratio, double angle, double moment_ratio, Index cells = 28) {
   Scene scene = sphere({0.0, 0.0}, cells);
   const double force = force_ratio * paper::kFriction * paper::kLoad;
