@@ -19,20 +19,20 @@ void SolveCache::begin_solve(double room) {
   make_room();
 }
 
-SolveCache::Thing SolveCache::take(const CacheKey& key) {
+SolveCache::CachedObject SolveCache::take(const CacheKey& key) {
   const auto found = std::ranges::find(entries_, key, &Entry::key);
   if (found == entries_.end()) return {};
-  if (found->solve != solve_) seconds_saved_ += found->thing.seconds;
+  if (found->solve != solve_) seconds_saved_ += found->object.seconds;
   bytes_ -= found->bytes;
-  Thing thing = std::move(found->thing);
+  CachedObject object = std::move(found->object);
   entries_.erase(found);
-  return thing;
+  return object;
 }
 
-void SolveCache::keep(CacheKey key, Thing thing, double bytes) {
+void SolveCache::keep(CacheKey key, CachedObject object, double bytes) {
   bytes += static_cast<double>(key.size());
   bytes_ += bytes;
-  entries_.push_front({std::move(key), std::move(thing), bytes, solve_});
+  entries_.push_front({std::move(key), std::move(object), bytes, solve_});
   make_room();
 }
 

@@ -12,10 +12,10 @@
 
 namespace slipstick::solver {
 
-/// All that a thing depends on, value by value: things that differ in a bit of it have different keys.
+/// All values that an object depends on. Objects whose values differ in any bit have different keys.
 class CacheKey {
  public:
-  /// what: the kind of thing.
+  /// what: the kind of object.
   explicit CacheKey(std::string what) : bytes_(std::move(what)) {}
 
   template <typename T>
@@ -49,21 +49,20 @@ class SolveCache {
   /// FFTW's plans share their tables of sines, so that old plans would change the digits of new ones.
   void begin_solve(double room);
 
-  struct Thing {
-    std::shared_ptr<void> thing;  ///< null: there is none
-    double seconds = 0.0;         ///< that making it took
+  struct CachedObject {
+    std::shared_ptr<void> object;  ///< null: the cache has none
+    double seconds = 0.0;          ///< that it took to make
   };
-  Thing take(const CacheKey& key);
-  void keep(CacheKey key, Thing thing, double bytes);
+  CachedObject take(const CacheKey& key);
+  void keep(CacheKey key, CachedObject object, double bytes);
 
-  /// Seconds that making the things took which came from earlier solves: this solve alone would have taken so
-  /// much longer.
+  /// Seconds that it took earlier solves to make the objects that this one reused.
   double seconds_saved() const { return seconds_saved_; }
 
  private:
   struct Entry {
     CacheKey key;
-    Thing thing;
+    CachedObject object;
     double bytes;
     long solve;  ///< the last that had it
   };
@@ -100,38 +99,38 @@ class Stopwatch {
   double saved_ = saved();
 };
 
-/// A thing from a cache, or made where it has none; the cache has it afterwards.
+/// An object from a cache, or a new one where the cache has none. The destructor gives it to the cache.
 template <typename T>
 class Cached {
  public:
   Cached() = default;
-  /// cache: null for none. make: returns a std::unique_ptr<T>; bytes: those of a T, about.
+  /// cache: null for none. make: returns a std::unique_ptr<T>; bytes: approximate size of a T.
   template <typename Make>
   Cached(std::shared_ptr<SolveCache> cache, CacheKey key, const Make& make, double bytes)
       : cache_(std::move(cache)), key_(std::move(key)), bytes_(bytes) {
     if (cache_) found_ = cache_->take(key_);
-    if (found_.thing) return;
+    if (found_.object) return;
     Stopwatch watch(cache_.get());
-    found_.thing = std::shared_ptr<T>(make());
+    found_.object = std::shared_ptr<T>(make());
     found_.seconds = watch.lap();
   }
   ~Cached() {
-    if (!cache_ || !found_.thing || std::uncaught_exceptions() > 0) return;  // in the middle of some work
+    if (!cache_ || !found_.object || std::uncaught_exceptions() > 0) return;  // its state may be inconsistent
     try {
       cache_->keep(std::move(key_), std::move(found_), bytes_);
-    } catch (const std::bad_alloc&) {  // then it is made again
+    } catch (const std::bad_alloc&) {  // the next solve makes it again
     }
   }
   Cached(Cached&&) noexcept = default;
   Cached& operator=(Cached&&) = delete;
 
-  T& operator*() const { return *static_cast<T*>(found_.thing.get()); }
+  T& operator*() const { return *static_cast<T*>(found_.object.get()); }
   T* operator->() const { return &**this; }
 
  private:
   std::shared_ptr<SolveCache> cache_;
   CacheKey key_{""};
-  SolveCache::Thing found_;
+  SolveCache::CachedObject found_;
   double bytes_ = 0.0;
 };
 

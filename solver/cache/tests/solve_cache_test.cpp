@@ -13,7 +13,7 @@
 namespace slipstick::solver {
 namespace {
 
-/// Scenes whose solves need the same things and others: of one grid under other loads, with other cell
+/// Scenes whose solves need the same objects and others: of one grid under other loads, with other cell
 /// tractions, by other operators and methods, on the whole grid, of dissimilar bodies in turns, step by step.
 std::vector<Scene> scenes_that_share() {
   const Scene paper = paper_scene(24, 0.6);
@@ -91,9 +91,9 @@ class KeptThings : public testing::Test {
   static CacheKey key(double value) { return CacheKey("number").add(value); }
   void keep(double value) { cache_.keep(key(value), {std::make_shared<double>(value), 1.0}, kBytes); }
   bool has(double value) {
-    const SolveCache::Thing found = cache_.take(key(value));
-    if (!found.thing) return false;
-    EXPECT_EQ(*std::static_pointer_cast<double>(found.thing), value);
+    const SolveCache::CachedObject found = cache_.take(key(value));
+    if (!found.object) return false;
+    EXPECT_EQ(*std::static_pointer_cast<double>(found.object), value);
     keep(value);
     return true;
   }
