@@ -135,9 +135,9 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
 }
 
 /// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with
-/// one of them, solved on the field's cells, is the field's up to `allowed`. All that the pressure does not
-/// tell apart, and where none explains it, one with a fitted number (a layer's thickness, the moduli).
-/// Contacts of more than kQuickCells cells are not tried.
+/// one of them, solved on the field's cells, is the field's up to `allowed`. All that give it are listed; if
+/// none does, one with a fitted number (a layer's thickness, the moduli). Larger contacts than kQuickCells
+/// are not tried.
 std::vector<Cause> mistakes_in_pressure(const Examination& e, double allowed) {
   const bool solved = e.reference.pressure && e.scene.pressure != solver::PressureModel::file;
   if (!solved || static_cast<double>(e.contact.grid.cells()) > kQuickCells) return {};

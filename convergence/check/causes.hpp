@@ -8,7 +8,7 @@
 
 namespace slipstick::convergence {
 
-/// The likely causes of what is wrong with a field.
+/// The likely causes of a field's errors.
 struct Explanation {
   std::optional<Diagnosis> diagnosis;  ///< of a field whose tractions, motion or law of friction are wrong
   std::vector<Cause> causes;           ///< mistakes without which the field would be good

@@ -65,7 +65,7 @@ TractionError traction_error_of(const Examination& e, const Eigen::ArrayXd& trac
   return traction_error(e.contact.stress_unit * traction, *e.exact.oracle, e.contact.grid_in_m());
 }
 
-/// Reason for errors that are missing beside an exact answer.
+/// Reason for errors that are missing although there is an exact answer.
 const std::string& unknown_text(const Oracle& exact) {
   return exact.only_normal.empty() ? kNoNumber : exact.only_normal;
 }

@@ -34,7 +34,7 @@ struct FieldCheck {
 
   bool good() const;
   std::string headline() const;  ///< the first quantity that is wrong, or that all are right
-  std::string details() const;   ///< the causes, what else is wrong, and what is right
+  std::string details() const;   ///< the causes, further wrong quantities, the right ones
 };
 
 /// Judges a traction field that any program computed for a scene, by Coulomb's law and against the exact
@@ -43,7 +43,7 @@ struct FieldCheck {
 ///  1. examine(): read the field, put it into the scene's conventions, pose its contact, measure its errors
 ///     and the errors that its mesh causes in right fields.
 ///  2. reach_verdict(): compare each quantity with its allowed maximum.
-///  3. explain(): name likely causes of what is wrong.
+///  3. explain(): name likely causes of wrong quantities.
 ///
 /// Without a twist, the scene's is taken if it imposes one, otherwise the one that fits Coulomb's law best.
 /// Throws InputError for a field or a scene that cannot be judged.

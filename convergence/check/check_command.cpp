@@ -8,7 +8,6 @@
 
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"
-#include "convergence/check/loops/loop_judgement.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -41,17 +40,17 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
                                "is a loop; --twist, --discrete and --pressure-given are for a field of "
                                "tractions; allowed: without them");
     }
-    result = check_loop(
+    const LoopCheck check = check_loop(
         scene, request.field,
         {.tolerance = request.check.tolerance.value_or(kLoopTolerance), .strict = request.check.strict});
-    text << loop_text(result);
-  } else {
-    const FieldCheck check = check_field(scene, request.field, request.check);
     result = to_json(check);
-    text << check_text(check);
-    return check.good() ? 0 : 1;
+    text << loop_text(check);
+    return check.good ? 0 : 1;
   }
-  return result["verdict"] == "good" ? 0 : 1;
+  const FieldCheck check = check_field(scene, request.field, request.check);
+  result = to_json(check);
+  text << check_text(check);
+  return check.good() ? 0 : 1;
 }
 
 }  // namespace

@@ -50,14 +50,14 @@ enum class Mistake {
   other_twist,  ///< found: the tractions' own, rad
 };
 
-/// A likely cause of what is wrong, and the numbers of its sentence.
+/// A likely cause of an error, and the numbers of its sentence.
 struct Cause {
   Mistake mistake = Mistake::none;
   double found = std::numeric_limits<double>::quiet_NaN();
   double expected = std::numeric_limits<double>::quiet_NaN();
   std::string subject = {};
-  bool alternative = false;  ///< to the cause before it in a list: the field does not tell them apart
-  std::string note = {};     ///< what follows from it, as a bracket behind the sentence; empty: nothing
+  bool alternative = false;  ///< to the cause before it in a list: both give the same field
+  std::string note = {};     ///< its consequence, in brackets behind the sentence; may be empty
 };
 std::string sentence(const Cause& cause);
 

@@ -11,7 +11,7 @@ namespace {
 
 const std::string kKey = "solver.program=";
 
-/// The text that a value of TOML or a bare word stands for.
+/// The text of a TOML value or of a bare word.
 std::string unquoted(const std::string& value) {
   const Json read = Json::parse(value, nullptr, false);
   if (read.is_string()) return read;

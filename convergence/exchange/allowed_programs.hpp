@@ -9,13 +9,14 @@
 
 namespace slipstick::convergence {
 
-/// Which programs may be started. A scene, study or gate file that a stranger wrote must not run a stranger's
-/// command: what a file names runs only where the user allows all.
+/// The programs that may be started. A scene, study or gate file that a stranger wrote must not run a
+/// stranger's command: a program that only a file names runs only if the user allows all.
 struct AllowedPrograms {
   bool all = false;                         ///< --allow-programs
   std::vector<std::string> overrides = {};  ///< of the command line, which may name one: "solver.program=..."
   std::filesystem::path tied_by = {};       ///< see ProgramOptions
-  std::optional<std::string> version = {};  ///< of the program, where it is known; else it is asked
+  std::optional<std::string> version =
+      {};  ///< of the program, where it is known; none: the program prints it
 };
 
 /// The override by which a scene is solved by this program, whatever its file names.

@@ -22,9 +22,9 @@ using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
 
-/// The exchange files' own version, at which a program may look.
+/// Version of the exchange files, for programs that depend on it.
 constexpr int kFormat = 1;
-/// A field whose normal load is off by this part is half a file, or not in Pa: coarse meshes and crude
+/// Relative error of the normal load beyond which a file lacks rows or is not in Pa: coarse meshes and crude
 /// quadratures are off by less.
 constexpr double kLoadOff = 0.25;
 
@@ -59,7 +59,7 @@ void write_csv(const fs::path& file, const Grid& grid, const ArrayXd& values) {
   });
 }
 
-/// Writes an array beside the scene and returns its name.
+/// Writes an array into the folder of the scene and returns its name.
 std::string write_array(const SolverProgram& program, const ExchangeFiles& files, const std::string& name,
                         const Grid& grid, const ArrayXd& values) {
   std::string file = name + (program.numpy ? ".npy" : ".csv");
@@ -104,7 +104,7 @@ void write_exchange(const SolverProgram& program, const ExchangeFiles& files, co
   if (!scene.friction.is_coulomb()) {
     throw solver::InputError(
         scene.source.string(), "contact.friction_law", fmt::format("\"{}\"", to_string(scene.friction.kind)),
-        "\"coulomb\" without a map, where another program solves: it is told a coefficient");
+        "\"coulomb\" without a map, where another program solves: it receives only a coefficient");
   }
   const Grid& grid = posed.grid;
   std::vector<double> x1;

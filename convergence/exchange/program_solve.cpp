@@ -14,12 +14,12 @@ namespace {
 
 using solver::Scene;
 
-/// A field whose loads are off by more, or whose tractions are above mu p by more, answers another scene.
-/// Coarse meshes are off by a hundredth. The gap may be anything: other discretisations have other ones.
+/// A field whose errors are larger belongs to another scene. Coarse meshes are off by a hundredth. The gap is
+/// not limited: it depends on the discretisation.
 constexpr solver::CertificateBounds kSameLoads{
     .gap = std::numeric_limits<double>::infinity(), .moment = 0.05, .force = 0.05, .friction_bound = 0.05};
 
-/// More iterations than this are no count.
+/// The largest count of iterations that is taken seriously.
 constexpr double kMaxIterations = 1e9;
 
 /// The scene under loads in N and N m.
@@ -31,8 +31,8 @@ Scene under_given_loads(Scene scene, double limit) {
   return scene;
 }
 
-/// The scene as far as a pressure alone answers it.
-Scene pressed_alone(Scene scene) {
+/// The scene's normal contact only.
+Scene normal_contact_of(Scene scene) {
   solver::Step& step = scene.steps.front();
   step.torsion = solver::Moment{0.0};
   step.force = {};
@@ -60,13 +60,13 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
   const ReadFields read = read_exchange(program, files, answer.scene, posed);
   const OwnNumbers own = read_own_numbers(program, files);
 
-  if (!read.tractions) answer.scene = pressed_alone(std::move(answer.scene));
+  if (!read.tractions) answer.scene = normal_contact_of(std::move(answer.scene));
   answer.exact = find_oracle(read.tractions ? scene : answer.scene);
   answer.solution = describe_given(answer.scene, read.fields);
   const std::string off = solver::violated_bounds(answer.solution.certificate, kSameLoads);
   if (read.tractions && !off.empty()) {
     answer.solution.status = solver::Status::not_converged;
-    answer.solution.message = off + ": no answer to these loads, whatever " + program.name + " says";
+    answer.solution.message = off + ": no answer to these loads, although " + program.name + " returned it";
   }
   if (!own.converged.value_or(true)) {
     answer.solution.status = solver::Status::not_converged;

@@ -11,31 +11,37 @@
 /// Scenes that another program solves.
 namespace slipstick::convergence {
 
-/// What a scene's program found.
+/// The answer of a scene's program.
 struct ProgramAnswer {
   solver::Scene scene;        ///< under the loads that the program was given, in N and N m
   OracleAnswer exact;         ///< at the same part of its limit moment, where a load is a ratio
-  solver::Solution solution;  ///< worked out from its fields alone
+  solver::Solution solution;  ///< from its fields only
   ProgramRecord program;
 };
 
-/// Gives the scene to its program and works out the answer from the field that it writes. A load that is a
-/// ratio is given as that of the limit moment of the grid's own pressure, as for this program's own methods.
-/// Throws ProgramFailure where the program fails; InputError for a scene that it does not solve, and a
-/// history.
+/// Solves a scene by its program:
+///
+///  1. pose() computes the scene's numbers, write_exchange() writes them.
+///  2. run_solver_program() runs the program, read_exchange() reads its field.
+///  3. describe_given() makes a solution of the field; loads that are off by more than a twentieth, or the
+///     program's own word, make it not converged.
+///
+/// A load that is a ratio becomes a moment by the limit of the grid's own pressure, as for the built-in
+/// methods. Throws ProgramFailure where the program fails; InputError for a scene that it does not solve, and
+/// a history.
 ProgramAnswer solve_by_program(const solver::Scene& scene, const AllowedPrograms& allowed);
 
 // ---------------------------------------------------------------- the files of an exchange,
 // docs/schema/exchange.schema.json (exchange_files.cpp)
 
-/// Writes the scene worked out: grid, cell centres, materials, loads, and beside it the gap and a given
-/// pressure.
+/// Writes the scene's numbers: grid, cell centres, materials, loads; and the gap and a given pressure as
+/// files of their own.
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                     const PosedScene& posed);
 
-/// The fields that a program wrote; tractions are zero and `tractions` is false where it found the pressure
-/// alone. Throws ProgramFailure for a file that is missing, broken, of another grid, that holds what is no
-/// number or a negative pressure, or carries another normal load.
+/// The fields that a program wrote; tractions are zero and `tractions` is false where it found only the
+/// pressure. Throws ProgramFailure for a file that is missing, broken or of another grid, that holds no
+/// finite number or a negative pressure, or that carries another normal load.
 struct ReadFields {
   GivenFields fields;
   bool tractions;
@@ -43,8 +49,7 @@ struct ReadFields {
 ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                          const PosedScene& posed);
 
-/// The program's own numbers, as far as it wrote any: twist_angle (rad), iterations, seconds, converged,
-/// message.
+/// The program's own numbers, if it wrote any: twist_angle (rad), iterations, seconds, converged, message.
 OwnNumbers read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
 
 }  // namespace slipstick::convergence

@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 using solver::InputError;
 
-/// The exit code by which a program says that it does not solve such scenes.
+/// The exit code of a program that does not solve such scenes.
 constexpr int kNotForIt = 3;
-/// Bytes of what a program says that are kept.
+/// Bytes of a program's output that are kept.
 constexpr std::size_t kKept = 4096;
-/// A version is there at once.
+/// s, for a program to print its version.
 constexpr double kVersionSeconds = 60.0;
 
 const solver::Range kSeconds{"positive, at most 86400", [](double x) { return x > 0.0 && x <= 86400.0; }};
@@ -44,7 +44,7 @@ ProgramEnd run(const SolverProgram& program, std::vector<std::string> words, dou
       .wait_at_most(seconds, kKept);
 }
 
-/// The last line of what it said, for a message; empty: it said nothing.
+/// The last line of a program's output, for a message; empty: no output.
 std::string last_line(std::string said) {
   while (!said.empty() && (said.back() == '\n' || said.back() == '\r')) said.pop_back();
   return plain_text(as_utf8(said.substr(said.find_last_of('\n') + 1)));
@@ -64,13 +64,12 @@ const solver::SettingKeys& program_keys() {
   static const solver::SettingKeys keys{
       {"name", KeyType::text, "", "the file's name", kAny, "Names it in results and figures."},
       {"command", KeyType::texts, "", kRequired, kAny,
-       "Words that start it, without a shell, in the folder of this file. In them {scene} stands for the "
-       "file that it reads, {field} for the one that it writes, {numbers} for one that it may write; "
-       "{python} for "
-       "the Python with NumPy that draws reports."},
+       "Words that start it, without a shell, in the folder of this file. {scene} becomes the file that it "
+       "reads, {field} the file that it writes, {numbers} a file that it may write, {python} the Python with "
+       "NumPy that draws reports."},
       {"version", KeyType::texts, "", "none", kAny,
-       "Words that print its version: part of what decides whether a kept result is still good."},
-      {"inputs", KeyType::texts, "", "those that the command names", kAny,
+       "Words that print its version; kept results of another version are not used."},
+      {"inputs", KeyType::texts, "", "files that the command names", kAny,
        "Files that its answers depend on, relative to this one."},
       {"time_limit", KeyType::number, "s", "600", kSeconds, "After this it is stopped, and the run failed."},
       {"arrays",
@@ -110,7 +109,7 @@ std::string version_of(const SolverProgram& program, const fs::path& tied_by) {
   const ProgramEnd end = run(program, program.version, kVersionSeconds, tied_by);
   if (!end.trouble.empty()) {
     throw ProgramFailure(with_last_line(
-        fmt::format("{}: asked for its version, it {}", program.name, end.trouble), end.output));
+        fmt::format("{}: while printing its version, it {}", program.name, end.trouble), end.output));
   }
   return last_line(end.output.substr(0, end.output.find('\n')));
 }

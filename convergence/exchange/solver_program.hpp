@@ -8,15 +8,15 @@
 #include "convergence/system/run_program.hpp"
 #include "solver/input/setting_key.hpp"
 
-/// Other programs that solve scenes, by files that say how each is started.
+/// Other programs that solve scenes; a file describes how each is started.
 namespace slipstick::convergence {
 
-/// A program, as its file (TOML) says.
+/// A program as its file (TOML) describes it.
 struct SolverProgram {
   std::filesystem::path file;
   std::string name;
-  /// The words that start it, in the folder of its file; {scene}, {field} and {numbers} stand for files,
-  /// {python} for the Python that draws reports.
+  /// The words that start it, in the folder of its file; {scene}, {field} and {numbers} become files,
+  /// {python} the Python that draws reports.
   std::vector<std::string> command;
   std::vector<std::string> version;           ///< words that print its version; empty: none
   std::vector<std::filesystem::path> inputs;  ///< files that its answers depend on
@@ -27,7 +27,7 @@ struct SolverProgram {
 /// Every key of such a file.
 const solver::SettingKeys& program_keys();
 
-/// Throws InputError naming file, key, value and what is allowed.
+/// Throws InputError, naming file, key, value and the allowed values.
 SolverProgram read_solver_program(const std::filesystem::path& file);
 
 /// A program that was killed, took too long, failed, or wrote no answer that can be read.
@@ -36,10 +36,10 @@ class ProgramFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What its version command says, its first line. Throws ProgramFailure.
+/// The first line that its version command prints. Throws ProgramFailure.
 std::string version_of(const SolverProgram& program, const std::filesystem::path& tied_by);
 
-/// The files on which its answers depend: its own, what its words and `inputs` name.
+/// The files on which its answers depend: its own, and the files that its words and `inputs` name.
 std::vector<std::filesystem::path> program_files(const SolverProgram& program);
 
 /// The files of one exchange.
@@ -47,8 +47,8 @@ struct ExchangeFiles {
   std::filesystem::path scene, field, numbers;
 };
 
-/// What it says, its last lines, and the CPU seconds that it took. Throws ProgramFailure; InputError where it
-/// ends with code 3, which means that it does not solve such scenes.
+/// Runs the program: its last lines of output and its CPU seconds. Throws ProgramFailure; InputError where it
+/// ends with code 3: it does not solve such scenes.
 ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles& files,
                               const std::filesystem::path& tied_by);
 

@@ -10,7 +10,7 @@
 #include "convergence/laws/twist_law.hpp"
 #include "solver/scene/scene.hpp"
 
-/// What a contact in torsion carries, in all the forms that other programs read.
+/// The law of a contact in torsion, moment against rotation, in all the forms that other programs read.
 namespace slipstick::convergence {
 
 // ---------------------------------------------------------------- limit loads (limit_surface.cpp)
@@ -26,7 +26,7 @@ struct LimitLoad {
 
 /// The loads that a contact carries. The surface is symmetric about the axis of moments.
 struct LimitSurface {
-  std::vector<LimitLoad> loads;  ///< from the moment alone to the force alone
+  std::vector<LimitLoad> loads;  ///< from pure moment to pure force
   /// Between loads next to each other the surface lies between their chord and their tangents, which are so
   /// far apart at most, over the distance from the origin.
   double gap;
@@ -71,7 +71,7 @@ struct ParallelElements {
   double moment_ratio_at(double twist) const;  ///< on first loading
 };
 
-/// The range of errors of m, and of numbers of elements, that may be asked for.
+/// The allowed errors of m, and the largest number of elements.
 inline constexpr double kMinLineError = 1e-7;
 inline constexpr double kMaxLineError = 0.5;
 inline constexpr int kMaxElements = 200;
@@ -86,7 +86,7 @@ StateTable tabulate_evenly(const analytic::Profile& profile, double error);
 /// As few elements as keep the error, from 1e-5 on. Throws std::domain_error for one out of range.
 ParallelElements parallel_elements(const analytic::Profile& profile, double error);
 
-/// So many elements at most (1 to kMaxElements, or std::domain_error), with the least error.
+/// At most `count` elements (1 to kMaxElements, or std::domain_error), with the least error.
 ParallelElements parallel_elements(const analytic::Profile& profile, int count);
 
 // ---------------------------------------------------------------- all together (contact_law.cpp)
@@ -151,8 +151,8 @@ struct ContactLaw {
 /// Throws std::domain_error, naming the number, where an option is out of range.
 ContactLaw make_contact_law(const LawContact& contact, const LawOptions& options);
 
-/// The cap at which granular codes let a sphere spin, over its exact limit, less 1: (2/3) mu W a is that of a
-/// uniform pressure.
+/// The cap at which granular codes let a sphere spin, over its exact limit, less 1: (2/3) mu W a is the limit
+/// of a uniform pressure.
 double uniform_pressure_cap_error(const analytic::Profile& profile);
 
 }  // namespace slipstick::convergence

@@ -12,7 +12,7 @@ namespace {
 
 using analytic::TorsionState;
 
-/// Error of m that elements may be asked for; kMaxElements reach it.
+/// Least error of m that kMaxElements elements reach.
 constexpr double kMinElementError = 1e-5;
 /// Rows of a table at equal steps: a file of some 10 MB.
 constexpr std::size_t kMaxEvenRows = 100000;

@@ -21,9 +21,9 @@ struct ChebyshevPiece {
 /// A function as polynomials on intervals that follow each other.
 struct PiecewiseChebyshev {
   std::vector<ChebyshevPiece> pieces;
-  double error = 0;  ///< the largest found, relative, at points between those of the fit
+  double error = 0;  ///< the largest found, relative, at points between the points of the fit
 
-  /// Beyond either end the nearest piece goes on.
+  /// Beyond either end the nearest piece is continued.
   double operator()(double x) const;
   std::size_t degree() const;  ///< the highest
 };
@@ -32,7 +32,7 @@ struct PiecewiseChebyshev {
 inline constexpr std::size_t kMaxDegree = 15;
 
 /// Fits f between the first and the last knot, with a piece's end at each knot and at halves between them
-/// where the tolerance asks for it; relative errors found are at most half the tolerance. Throws
+/// where the tolerance needs it; relative errors found are at most half the tolerance. Throws
 /// std::domain_error where 200 pieces do not reach it.
 PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const std::vector<double>& knots,
                                  double tolerance);
@@ -44,9 +44,9 @@ PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const s
 /// Near the limit t grows like the logarithm of 1 - m; in l = -ln(1 - m) both ways are smooth from rest to
 /// limit: l/t is fitted over t, and t/l over l.
 ///
-/// Relative errors of m and t are at most `error`, and what an ulp of the argument costs, where 1 - m is at
-/// least kLastDeficit; a larger rotation carries the limit moment. What a cycle between m and -m loses is 4 M
-/// phi (phi that of m) times (l - l_1)^p times a polynomial, l_1 where slip begins and p the power of the
+/// Relative errors of m and t are at most `error`, plus the effect of an ulp of the argument, where 1 - m is
+/// at least kLastDeficit; a larger rotation carries the limit moment. A cycle between m and -m loses the
+/// energy 4 M phi(m) times (l - l_1)^p times a polynomial, l_1 where slip begins and p the power of the
 /// smallest losses: relative errors are at most `error` however little is lost (a sphere loses M^3, p = 1).
 /// After a reversal Masing's rule gives the moment, with errors up to three times that of first loading.
 struct TwistLaw {
@@ -69,7 +69,7 @@ inline constexpr double kStiffness = 16.0 / 3.0;
 /// 1 - m where the fit ends.
 inline constexpr double kLastDeficit = 1e-12;
 
-/// The errors that may be asked for.
+/// The allowed errors.
 inline constexpr double kMinLawError = 1e-11;
 inline constexpr double kMaxLawError = 1e-2;
 

@@ -52,7 +52,7 @@ int run_law(const CLI::App& command, const LawRequest& request, std::ostream& te
   std::vector<std::string> texts;
   for (const std::string& file : request.files) texts.push_back(law_file(law, file));
   result = law_json(law);
-  text << law_text(result);
+  text << law_text(law);
   for (std::size_t i = 0; i < texts.size(); ++i) write_option_file("--write", request.files[i], texts[i]);
   return 0;
 }
@@ -68,11 +68,12 @@ void add_accuracy_options(CLI::App& command, LawOptions& options) {
       command.add_option("--element-error", options.element_error,
                          "over the limit, of the elements in parallel on first loading; 1e-5 to 0.5");
   error->capture_default_str();
-  command.add_option("--elements", options.elements, "so many elements, 1 to 200, with the least error")
+  command
+      .add_option("--elements", options.elements, "number of elements, 1 to 200, whose error is the least")
       ->excludes(error);
   command
       .add_option("--limit-loads", options.limit_loads,
-                  "points of the limit surface, from the moment alone to the force alone; at least 3")
+                  "points of the limit surface, from pure moment to pure force; at least 3")
       ->check(CLI::Range(3, 10000))
       ->capture_default_str();
 }
@@ -114,7 +115,7 @@ convergence::RunCommand add_law_command(CLI::App& app) {
   command->footer(
       "Examples: slipstick law convergence/scenes/paper.toml --write law.h --write law.inp --json law.json\n"
       "          slipstick law --profile cone --elements 8\n"
-      "docs/guides/contact-law.md says what each form holds, and its error.");
+      "docs/guides/contact-law.md describes each form and its error.");
   return running(command, request, run_law);
 }
 

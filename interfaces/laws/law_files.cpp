@@ -30,7 +30,7 @@ void require_units(const ContactLaw& law, const std::filesystem::path& path) {
   }
   if (ending == ".sdf" && !drake_hydroelastic(law)) {
     throw solver::InputError(fmt::format("--write {}", path.string()),
-                             "Drake's modulus is that of a sphere; allowed: with the scene of one");
+                             "Drake's modulus needs a sphere; allowed: with the scene of a sphere");
   }
 }
 
@@ -67,7 +67,7 @@ std::string law_heading(const ContactLaw& law, const std::string& before) {
                                       law.contact.units->contact_radius)
                         : "rotations over mu W/(G a^2), moments over mu W a, energies over their product";
   return fmt::format(
-      "{0}Torsion of {1}, profile {2}: first loading and what follows from it, by slipstick law.\n"
+      "{0}Torsion of {1}, profile {2}: first loading and its consequences, by slipstick law.\n"
       "{0}Units: {3}.\n",
       before, on_one_line(law.contact.name), on_one_line(law.contact.profile->name()), units);
 }

@@ -82,6 +82,6 @@ std::optional<DrakeHydroelastic> drake_hydroelastic(const ContactLaw& law);
 Json law_json(const ContactLaw& law);
 
 /// The result in a few lines of text.
-std::string law_text(const Json& result);
+std::string law_text(const ContactLaw& law);
 
 }  // namespace slipstick::laws

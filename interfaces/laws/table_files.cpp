@@ -61,7 +61,7 @@ std::string lammps_table(const ContactLaw& law) {
       "linear\n"
       "# {1}, or spline {1}, LAMMPS takes these rows as they are, and the moment is within {0:.2g} of the "
       "limit; with\n"
-      "# fewer values than rows it is not. It knows no unloading. What pair_style granular holds:\n"
+      "# fewer values than rows it is not. It has no unloading. Parameters for pair_style granular:\n"
       "#   twisting sds {2:.10g} 0.0 {3:.10g}\n"
       "# has the exact limit and misses the moment by {4:.1f} % of it at most; twisting marshall has a limit "
       "that is\n"

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
-#include "convergence/check/loops/loop_contact.hpp"
-#include "convergence/check/loops/loop_judgement.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
@@ -17,12 +16,6 @@ namespace slipstick::convergence {
 namespace {
 
 const std::string kNotShown = "the loop does not show it";
-
-/// A contact under one normal load, and the loop in its units.
-struct LoopUnderLoad {
-  LoopContact contact;
-  LoopPath path;
-};
 
 /// The units and signs of a record.
 struct LoopConventions {
@@ -97,38 +90,40 @@ Json number_json(const LoopNumber& number, double unit) {
   return json;
 }
 
-Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) {
+Json under_load_json(const LoopUnderLoad& loop) {
   const double motion = loop.contact.motion_unit;
   const double limit = loop.contact.limit;
+  const LoopJudgement& judgement = loop.judgement;
+  const LoopHypothesis& exact = judgement.exact;
   Json json{{"normal_load", loop.contact.normal_load},
             {"verdict", judgement.good ? "good" : "bad"},
             {"why", judgement.why}};
   if (judgement.law.empty()) {
     set_missing(json, "law", "none of the known laws explains it, or more than one");
   } else {
-    json["law"] = judgement.law;
+    json.update({{"law", judgement.law}});
   }
-  json["rows"] = loop.path.twist.size();
-  json["reversals"] = loop.path.turns.size() - 2;
-  json["limit"] = limit;
+  json.update(
+      {{"rows", loop.path.twist.size()}, {"reversals", loop.path.turns.size() - 2}, {"limit", limit}});
   set_number(json, "residual", judgement.residual, "not a number");
   set_number(json, "noise", judgement.noise, "not a number");
   set_number(json, "slip_error", judgement.slip_error, kNotShown);
   set_number(json, "slip_noise", judgement.slip_noise, kNotShown);
-  const LoopHypothesis& exact = judgement.exact;
-  json["start"] = {{"turned", exact.start.turned * motion},
-                   {"motion_offset", exact.start.shift == 0.0 ? 0.0 : -exact.start.shift * motion},
-                   {"load_offset", exact.offset * limit}};
-  json["stiffness"] = number_json(judgement.stiffness, limit / motion);
-  json["largest_load"] = number_json(judgement.largest_load, limit);
-  json["areas"] = Json::array();
-  for (const LoopNumber& area : judgement.areas) json["areas"].push_back(number_json(area, limit * motion));
-  json["tried"] = Json::array();
+  Json areas = Json::array();
+  for (const LoopNumber& area : judgement.areas) areas.push_back(number_json(area, limit * motion));
+  Json tried = Json::array();
   for (const LoopHypothesis& law : judgement.fitted) {
-    Json tried{{"law", law.name}, {"parameters", law.parameters}};
-    set_number(tried, "residual", law.residual, "not a number");
-    json["tried"].push_back(tried);
+    set_number(tried.emplace_back(Json{{"law", law.name}, {"parameters", law.parameters}}), "residual",
+               law.residual, "not a number");
   }
+  json.update({{"start",
+                {{"turned", exact.start.turned * motion},
+                 {"motion_offset", exact.start.shift == 0.0 ? 0.0 : -exact.start.shift * motion},
+                 {"load_offset", exact.offset * limit}}},
+               {"stiffness", number_json(judgement.stiffness, limit / motion)},
+               {"largest_load", number_json(judgement.largest_load, limit)},
+               {"areas", areas},
+               {"tried", tried}});
   return json;
 }
 
@@ -145,7 +140,7 @@ std::vector<std::string> notes_of(const UnitName& load, const UnitName& motion, 
   if (load.size != 1.0) notes.push_back(fmt::format("the {} is in {}", words.load, load.name));
   if (motion.size != 1.0) notes.push_back(fmt::format("the {} is in {}", words.motion, motion.name));
   if (other_way) {
-    notes.push_back(fmt::format("the {} is that on the other body, or the {} the other way round", words.load,
+    notes.push_back(fmt::format("the {} acts on the other body, or the {} is the other way round", words.load,
                                 words.motion));
   }
   return notes;
@@ -170,14 +165,14 @@ double roughly_off(const LoopUnderLoad& loop) {
 }
 
 /// The units and the sign in which a loop is near the exact law, if it is far from it in the scene's. Another
-/// unit is taken only where slip shows, since stiffness alone does not tell units apart.
+/// unit is taken only where slip shows: loops without slip fit in any unit.
 LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const LoopContact& contact,
                                  double tolerance) {
   constexpr double kNear = 0.35;                // roughly_off() at most, in the right units
   constexpr double kFar = 0.7;                  // and at least in wrong ones, where slip shows
   constexpr double kLargestWithoutSlip = 0.05;  // load over the limit
   const auto loop_in = [&](const LoopConventions& conventions) {
-    return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact)};
+    return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact), {}};
   };
   const LoopUnderLoad given = loop_in({});
   const double as_given = roughly_off(given);
@@ -210,105 +205,122 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
 }
 
-/// Adds d ln(largest moment)/d ln(normal load) to the result, of the loops by least squares and of the limit.
-/// Returns the fault in words, empty where there is none.
-std::string exponent_fault(const std::vector<LoopUnderLoad>& loops, Json& json) {
-  constexpr double kSameExponent = 0.05;
+/// d ln(largest moment)/d ln(normal load) of the loops by least squares, and of the limit.
+LoopNumber load_exponent(const std::vector<LoopUnderLoad>& loops) {
   std::vector<double> x;
   std::vector<double> y;
   for (const LoopUnderLoad& loop : loops) {
     x.push_back(std::log(loop.contact.normal_load));
     y.push_back(std::log(loop.contact.limit * largest_of(loop.path.moment)));
   }
-  const double value = line_through(x, y).slope;
-  const double exact = loops.front().contact.limit_exponent;
-  json["load_exponent"] = {{"value", value}, {"exact", exact}};
-  if (std::abs(value - exact) <= kSameExponent) return "";
-  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", value, exact,
-                     std::abs(value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
+  return {line_through(x, y).slope, loops.front().contact.limit_exponent};
+}
+
+/// The fault of an exponent in words, empty where there is none.
+std::string exponent_fault(const LoopNumber& exponent) {
+  constexpr double kSameExponent = 0.05;
+  if (std::abs(exponent.value - exponent.exact) <= kSameExponent) return "";
+  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", exponent.value,
+                     exponent.exact,
+                     std::abs(exponent.value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
 }
 
 }  // namespace
 
-Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
+LoopCheck check_loop(const solver::Scene& scene, const std::filesystem::path& file,
+                     const LoopOptions& options) {
   law_contact(scene);  // or why there is none, before the loop is read
   const LoopRecord record = read_loop(file);
   const auto contact_under = record.of_force ? force_contact : torsion_contact;
   const std::vector<LoadRows> groups = rows_by_load(record, *scene.steps.front().normal);
   std::vector<LoopContact> contacts;
   for (const LoadRows& group : groups) contacts.push_back(contact_under(scene, group.normal_load));
-  const auto loops_in = [&](const LoopConventions& conventions) {
+  const auto judged_in = [&](const LoopConventions& conventions) {
     std::vector<LoopUnderLoad> loops;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      loops.push_back(
-          {contacts[i], make_path(record, groups[i].from, groups[i].to, conventions, contacts[i])});
+      LoopPath path = make_path(record, groups[i].from, groups[i].to, conventions, contacts[i]);
+      LoopJudgement judgement = judge_loop(path, contacts[i], options.tolerance);
+      loops.push_back({contacts[i], std::move(path), std::move(judgement)});
     }
     return loops;
   };
-  const auto judge_all = [&](const std::vector<LoopUnderLoad>& loops) {
-    std::vector<LoopJudgement> judgements;
-    for (const LoopUnderLoad& loop : loops) {
-      judgements.push_back(judge_loop(loop.path, loop.contact, options.tolerance));
+  LoopCheck check{.name = scene.name,
+                  .file = file,
+                  .of_force = record.of_force,
+                  .tolerance = options.tolerance,
+                  .conventions = {},
+                  .load_exponent = {},
+                  .good = true,
+                  .why = "",
+                  .loads = judged_in({})};
+  if (!std::ranges::all_of(check.loads, [](const LoopUnderLoad& loop) { return loop.judgement.good; })) {
+    const LoopConventions conventions =
+        find_conventions(record, groups.front().to, contacts.front(), options.tolerance);
+    check.conventions = conventions.notes;
+    if (!conventions.notes.empty() && !options.strict) check.loads = judged_in(conventions);
+    if (!conventions.notes.empty() && options.strict) {
+      check.good = false;
+      check.why = conventions.notes.front();
     }
-    return judgements;
-  };
-  std::vector<LoopUnderLoad> loops = loops_in({});
-  std::vector<LoopJudgement> judgements = judge_all(loops);
-  LoopConventions conventions;
-  if (!std::ranges::all_of(judgements, &LoopJudgement::good)) {
-    conventions = find_conventions(record, groups.front().to, contacts.front(), options.tolerance);
   }
-  if (!conventions.notes.empty() && !options.strict) {
-    loops = loops_in(conventions);
-    judgements = judge_all(loops);
+  for (LoopUnderLoad& loop : check.loads) {
+    LoopJudgement& judgement = loop.judgement;
+    if (!judgement.good) explain(judgement, loop.path, loop.contact, options.tolerance);
+    if (check.why.empty() || (check.good && !judgement.good)) check.why = judgement.why;
+    check.good = check.good && judgement.good;
   }
-  bool good = !(options.strict && !conventions.notes.empty());
-  std::string why = good ? "" : conventions.notes.front();
+  if (check.loads.size() > 1 && all_slide(check.loads)) {
+    check.load_exponent = load_exponent(check.loads);
+    if (const std::string fault = exponent_fault(*check.load_exponent); !fault.empty()) {
+      check.why = fault + "; " + check.why;
+      check.good = false;
+    }
+  }
+  return check;
+}
+
+Json to_json(const LoopCheck& check) {
   Json loads = Json::array();
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!judgements[i].good) explain(judgements[i], loops[i].path, loops[i].contact, options.tolerance);
-    if (why.empty() || (good && !judgements[i].good)) why = judgements[i].why;
-    good = good && judgements[i].good;
-    loads.push_back(under_load_json(loops[i], judgements[i]));
-  }
-  Json json{{"name", scene.name}, {"loop", file.string()}, {"of", record.of_force ? "force" : "torsion"}};
-  json["verdict"] = "";
-  json["why"] = "";
-  json["conventions"] = conventions.notes;
-  json["tolerance"] = options.tolerance;
-  if (loops.size() > 1 && all_slide(loops)) {
-    if (const std::string fault = exponent_fault(loops, json); !fault.empty()) {
-      why = fault + "; " + why;
-      good = false;
-    }
-  }
-  json["verdict"] = good ? "good" : "bad";
-  json["why"] = why;
-  json["loads"] = loads;
-  json["provenance"] = provenance(1);
+  for (const LoopUnderLoad& loop : check.loads) loads.push_back(under_load_json(loop));
+  Json json{{"name", check.name},
+            {"loop", check.file.string()},
+            {"of", check.of_force ? "force" : "torsion"},
+            {"verdict", check.good ? "good" : "bad"},
+            {"why", check.why},
+            {"conventions", check.conventions},
+            {"tolerance", check.tolerance}};
+  if (const auto& exponent = check.load_exponent)
+    json.update({{"load_exponent", {{"value", exponent->value}, {"exact", exponent->exact}}}});
+  json.update({{"loads", loads}, {"provenance", provenance(1)}});
   return json;
 }
 
-std::string loop_text(const Json& r) {
-  const bool of_force = r["of"] == "force";
-  const char* const load_unit = of_force ? "N" : "N m";
-  const auto beside = [](const Json& number, const char* unit) {
-    return fmt::format("{} {} (exact {})", number_text(number["value"]), unit, number_text(number["exact"]));
+std::string loop_text(const LoopCheck& check) {
+  const char* const load_unit = check.of_force ? "N" : "N m";
+  const auto with_exact = [](const LoopNumber& number, double unit, const char* name) {
+    const auto text = [&](double value) {
+      return std::isfinite(value) ? fmt::format("{:.6g}", value * unit) : std::string("-");
+    };
+    return fmt::format("{} {} (exact {})", text(number.value), name, text(number.exact));
   };
-  std::string text = fmt::format("{}: {}\n", r["verdict"].get<std::string>(), r["why"].get<std::string>());
-  text += text_line("loop", r["loop"].get<std::string>());
-  for (const Json& note : r["conventions"]) text += text_line("note", note.get<std::string>());
-  if (r.contains("load_exponent")) text += text_line("load exponent", beside(r["load_exponent"], ""));
-  for (const Json& load : r["loads"]) {
-    text +=
-        text_line("normal load", fmt::format("{} N, {} rows, {} reversals", number_text(load["normal_load"]),
-                                             load["rows"].get<int>(), load["reversals"].get<int>()));
-    text += text_line("stiffness", beside(load["stiffness"], of_force ? "N/m" : "N m/rad") +
-                                       ", up to a third of the largest load");
-    text += text_line(of_force ? "force" : "moment",
-                      fmt::format("{}, of the limit {} {}", beside(load["largest_load"], load_unit),
-                                  number_text(load["limit"]), load_unit));
-    for (const Json& area : load["areas"]) text += text_line("energy lost", beside(area, "J in a loop"));
+  std::string text = fmt::format("{}: {}\n", check.good ? "good" : "bad", check.why);
+  text += text_line("loop", check.file.string());
+  for (const std::string& note : check.conventions) text += text_line("note", note);
+  if (check.load_exponent) text += text_line("load exponent", with_exact(*check.load_exponent, 1.0, ""));
+  for (const LoopUnderLoad& loop : check.loads) {
+    const double motion = loop.contact.motion_unit;
+    const double limit = loop.contact.limit;
+    const LoopJudgement& judgement = loop.judgement;
+    text += text_line("normal load", fmt::format("{:.6g} N, {} rows, {} reversals", loop.contact.normal_load,
+                                                 loop.path.twist.size(), loop.path.turns.size() - 2));
+    text += text_line("stiffness",
+                      with_exact(judgement.stiffness, limit / motion, check.of_force ? "N/m" : "N m/rad") +
+                          ", up to a third of the largest load");
+    text += text_line(check.of_force ? "force" : "moment",
+                      fmt::format("{}, of the limit {:.6g} {}",
+                                  with_exact(judgement.largest_load, limit, load_unit), limit, load_unit));
+    for (const LoopNumber& area : judgement.areas)
+      text += text_line("energy lost", with_exact(area, limit * motion, "J in a loop"));
   }
   return text;
 }

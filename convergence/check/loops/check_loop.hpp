@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "convergence/check/loops/loop_contact.hpp"
+#include "convergence/check/loops/loop_judgement.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "solver/scene/scene.hpp"
 
@@ -15,14 +18,38 @@ struct LoopOptions {
   bool strict = false;  ///< a good loop is in the scene's units and signs, too
 };
 
+/// A loop under one normal load, in the contact's units, and its judgement.
+struct LoopUnderLoad {
+  LoopContact contact;
+  LoopPath path;
+  LoopJudgement judgement = {};
+};
+
+/// A loop that was checked.
+struct LoopCheck {
+  std::string name;  ///< of the scene
+  std::filesystem::path file;
+  bool of_force;
+  double tolerance;
+  std::vector<std::string> conventions;  ///< units and signs that differ from the scene's
+  std::optional<LoopNumber>
+      load_exponent;  ///< d ln(limit)/d ln(normal load), of several loops that all slide
+  bool good;
+  std::string why;  ///< one sentence
+  std::vector<LoopUnderLoad> loads;
+};
+
 /// Judges a loop of moment against rotation, or of force against displacement, that any program computed for
-/// a scene. The normal loads are those of the file, otherwise the scene's. The result has SI units;
-/// result["verdict"] is good or bad, result["why"] one sentence. Throws InputError for a loop that cannot be
-/// read, and for a scene whose torsion has no exact law.
-Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options);
+/// a scene. The normal loads are the file's, otherwise the scene's. Throws InputError for a loop that cannot
+/// be read, and for a scene whose torsion has no exact law.
+LoopCheck check_loop(const solver::Scene& scene, const std::filesystem::path& file,
+                     const LoopOptions& options);
+
+/// The result in SI units.
+Json to_json(const LoopCheck& check);
 
 /// The result in a few lines of text.
-std::string loop_text(const Json& result);
+std::string loop_text(const LoopCheck& check);
 
 // ---------------------------------------------------------------- its file (loop_record.cpp)
 

@@ -34,7 +34,7 @@ struct LoopContact {
   double stiffness_exponent;              ///< d ln(stiffness at rest)/d ln(normal load)
   double one_body_upper;                  ///< stiffness with the lower body rigid, over the pair's
   double one_body_lower;  ///< stiffness with the upper body rigid; infinite if the lower one is
-  /// The limit of a uniform pressure over the exact one; torsion alone.
+  /// The limit of a uniform pressure over the exact one; only for torsion.
   std::optional<double> uniform_pressure_limit;
   std::optional<double> sphere_limit;  ///< of a sphere in torsion, M_lim/(mu W a), for the paper's Eq. (7)
   /// The first loading of other profiles of the same radius, and their names.

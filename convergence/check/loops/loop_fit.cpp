@@ -71,7 +71,7 @@ class Fitter {
     moment += columns * share;
     const Eigen::VectorXd error = moment - own;
     const double rms = trimmed_mean({error.begin(), error.end()});
-    constexpr double kLargestPart = 0.8;  // proportion beside a law; beyond it the law itself hardly counts
+    constexpr double kLargestPart = 0.8;  // proportion that is added to a law: a larger one hides the law
     constexpr double kPrice = 12.0;       // chi squared that a parameter has to gain
     const auto count = static_cast<double>(parameters.size()) + (family_.beside.empty() ? 0.0 : 1.0) +
                        (start_is_free_ ? 2.0 : 0.0);

@@ -30,11 +30,11 @@ struct LoopHypothesis {
   double cost = 0.0;  ///< the likeliest law has the lowest
   LoopStart start;
   double offset = 0.0;         ///< of the record's moments
-  double part = 0.0;           ///< proportion of LoopFamily::beside
+  double part = 0.0;           ///< proportion of the field that LoopFamily::beside adds
   std::vector<double> moment;  ///< in each row, with the offset
 };
 
-/// Whether the record begins at zero, so that it may go on from rest.
+/// Whether the record begins at zero, where it may start from rest.
 bool begins_at_zero(const LoopPath& path);
 
 /// Rest, and other states from which the record may start; a fit varies the others.

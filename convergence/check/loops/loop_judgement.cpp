@@ -9,8 +9,8 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Allowed error of the moment that slip takes off, over that of the moment: at half of the limit slip takes
-/// off about a tenth.
+/// Allowed error of the moment that slip takes off, over the allowed error of the moment: at half of the
+/// limit slip takes off about a tenth.
 constexpr double kSlipOverLoad = 10.0;
 /// Standard deviations that noise may explain.
 constexpr double kSlipSigmas = 4.0;
@@ -41,8 +41,8 @@ Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values
   return left - twist * (twist.dot(left) / twist.squaredNorm());
 }
 
-/// Slip makes the moment smaller than the stiffness at rest would. Finds by least squares how much of that
-/// the record shows, beside any straight line, and how far its shape differs.
+/// Slip makes the moment smaller than the stiffness at rest would. Finds by least squares, up to
+/// any straight line, how much of that difference the record shows and how far its shape differs.
 void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact) {
   const auto rows = static_cast<Eigen::Index>(path.twist.size());
   const auto map = [&](const std::vector<double>& values) {
@@ -76,7 +76,7 @@ double noise_beside(const LoopPath& path, const LoopHypothesis& law) {
   return row_noise(path, error);
 }
 
-/// The family of a law: those that scale the exact curve are one.
+/// The family of a law: laws that scale the exact curve are one family.
 std::string family_of(const LoopHypothesis& law) {
   const bool scales = law.name == "limit" || law.name == "stiffness" || law.name == "factor";
   return scales ? "limit_and_stiffness" : law.name;
@@ -175,7 +175,7 @@ void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& 
   judgement.fitted = fit_wrong_laws(path, contact);
   const LoopHypothesis& likely = *std::ranges::min_element(judgement.fitted, {}, &LoopHypothesis::cost);
   const double noise = noise_beside(path, likely) / judgement.largest_load.value;
-  constexpr double kAtNoise = 1.1;  // residual over noise where noise alone makes it
+  constexpr double kAtNoise = 1.1;  // residual over noise, if it is only noise
   const bool at_noise = likely.residual <= kAtNoise * noise && likely.cost < judgement.exact.cost;
   const double off = without_noise(likely.residual, noise);
   const bool explains = at_noise || off <= explained(likely) * tolerance;

@@ -189,8 +189,8 @@ class Families {
          },
          [=, this](const Parameters& p) {
            return fmt::format(
-               "two springs, one of which slips at {:.2f} of the limit: {:.2f} of the exact stiffness stay",
-               p[1], p[0]);
+               "two springs: one slips at {:.2f} of the limit, and {:.2f} of the exact stiffness stay", p[1],
+               p[0]);
          },
          spring});
   }
@@ -238,13 +238,13 @@ class Families {
     }
     const double rest = contact_.stiffness;
     add("exponential", {[rest](double t) { return std::copysign(-std::expm1(-rest * std::abs(t)), t); }},
-        "an exponential approach to the limit in place of partial slip", sets);
+        "an exponential approach to the limit instead of partial slip", sets);
     add("hyperbola", {[rest](double t) { return rest * t / (1.0 + rest * std::abs(t)); }},
-        "a hyperbola towards the limit in place of partial slip", sets);
+        "a hyperbola towards the limit instead of partial slip", sets);
   }
 
   /// Laws of control and of structures: the stiffness follows from the moment in the direction of motion, and
-  /// reversals are forgotten.
+  /// reversals leave no memory.
   void add_forgetful() {
     const double rest = contact_.stiffness;
     const auto by_moment = [&](const char* name, const char* sentence, const auto& curve,
@@ -255,17 +255,17 @@ class Families {
           sentence, {Free::none, Free::both});
     };
     by_moment(
-        "dahl", "Dahl's law, whose reversals are forgotten", [](double u) { return -std::expm1(-u); },
+        "dahl", "Dahl's law, without memory of reversals", [](double u) { return -std::expm1(-u); },
         [](double m) { return -std::log1p(-m); });
     by_moment(
-        "dahl", "Dahl's law with the exponent 2, whose reversals are forgotten",
+        "dahl", "Dahl's law with the exponent 2, without memory of reversals",
         [](double u) { return u / (1.0 + u); }, [](double m) { return m / (1.0 - m); });
     by_moment(
-        "dahl", "Dahl's law with the exponent 1/2, whose reversals are forgotten",
+        "dahl", "Dahl's law with the exponent 1/2, without memory of reversals",
         [](double u) { return u < 2.0 ? u - 0.25 * u * u : 1.0; },
         [](double m) { return 2.0 - 2.0 * std::sqrt(1.0 - m); });
     by_moment(
-        "bouc_wen", "Bouc's and Wen's law with the exponent 2, whose reversals are forgotten",
+        "bouc_wen", "Bouc's and Wen's law with the exponent 2, without memory of reversals",
         [](double u) { return u < 0.0 ? u : std::tanh(u); },
         [](double m) { return m < 0.0 ? m : std::atanh(m); });
   }
@@ -284,7 +284,7 @@ class Families {
                        [=, this](const Parameters& p) {
                          return fmt::format(
                              "a part of the {} is viscous, {:.2g} % of the largest at the fastest{}",
-                             contact_.words.load, 100.0 * p[0], slips ? "" : "; no slip beside it");
+                             contact_.words.load, 100.0 * p[0], slips ? "" : "; nothing slips");
                        },
                        viscous});
     }

@@ -11,11 +11,11 @@ namespace {
 constexpr double kReversal = 0.04;
 /// and at least;
 constexpr double kMinReversal = 1e-3;
-/// in between it counts beyond so many standard deviations of noise.
+/// in between it counts beyond this multiple of the noise's standard deviation.
 constexpr double kNoiseSigmas = 8.0;
 /// Part of a loop's range within which it has to close.
 constexpr double kClosing = 0.02;
-/// Part of the range: smaller fourth differences are those of a smooth motion, larger ones are noise.
+/// Part of the range: fourth differences below it belong to a smooth motion, larger ones are noise.
 constexpr double kVisibleNoise = 1e-4;
 
 struct Reversal {

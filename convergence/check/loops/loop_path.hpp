@@ -35,12 +35,12 @@ struct LoopLine {
 };
 LoopLine line_through(std::span<const double> x, std::span<const double> y);
 
-/// Fills in turns, turn_twist and twist_noise. At a reversal the rotation turns back by more than noise does.
+/// Fills in turns, turn_twist and twist_noise. A reversal is larger than the noise.
 void find_turns(LoopPath& path);
 
 /// The rule for branches after a reversal.
 enum class BranchRule {
-  masing,        ///< a branch is the first loading, enlarged twice; a closed loop is forgotten
+  masing,        ///< a branch is the first loading, enlarged twice; a closed loop leaves no memory
   not_enlarged,  ///< a branch is the first loading in its own size
   no_slip_back,  ///< a branch has the stiffness at rest up to the largest moment so far: isotropic hardening
   elastic,       ///< moment and rotation stay on the curve of first loading

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
-#include "convergence/results/exact_result.hpp"
+#include "convergence/results/solution_fields.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/solve.hpp"
 
@@ -86,7 +86,7 @@ inline solver::Scene scene_of(const std::string& name, int cells = 32,
   return solver::read_scene(kScenes + "/" + name + ".toml", overrides);
 }
 
-/// A checked field: its result as JSON, and the verdict and causes of which the sentences are made.
+/// A checked field: its result as JSON and text, and the verdict and causes behind the sentences.
 struct Checked : Json {
   Verdict verdict;
   std::vector<Cause> causes;

@@ -1,5 +1,5 @@
-"""corpus_test.py PROGRAM SCENES [COUNT [SEED]]: right and wrong fields, made by a seed, and what slipstick check says of them.
-COUNT is that of the scenes (default 4; 30 make some 300 right and 1,000 wrong fields). Prints tables by mistake and amplitude.
+"""corpus_test.py PROGRAM SCENES [COUNT [SEED]]: right and wrong fields, made by a seed, and their verdicts by slipstick check.
+COUNT: number of scenes (default 4; 30 make some 300 right and 1,000 wrong fields). Prints tables by mistake and amplitude.
 Fails where a right field is bad or one that is wrong in full is good, where more than 1 bad field in 10 has no quantity, or more
 than 1 in 50 a wrong cause."""
 
@@ -188,7 +188,7 @@ def ask(scene, keys, rows, options):
 
 
 def cause_in(details):
-    found = re.search(r"it looks like (.*?)(; besides|; the |; it |; Coulomb|$)", details)
+    found = re.search(r"likely cause: (.*?)(; also wrong|; the |; it |; Coulomb|$)", details)
     return found.group(1) if found else None
 
 

@@ -1,5 +1,5 @@
-"""readers_test.py PROGRAM SCENES: one field of the paper's sphere, written as programs of many kinds write it. What is read
-is the same field to the last digit; what is not is refused with the words that help."""
+"""readers_test.py PROGRAM SCENES: one field of the paper's sphere, written as programs of many kinds write it. The result
+is the same field to the last digit, or a refusal that names the reason."""
 
 import json
 import subprocess
@@ -52,7 +52,7 @@ class Readers(unittest.TestCase):
 
     @classmethod
     def check(cls, name, *options):
-        """What is said of a field but for its name and the program's; or the refusal."""
+        """The result of a field without its name and the program's; or the refusal."""
         ran = subprocess.run([PROGRAM, "check", SCENE, cls.folder / name, "--strict", "--quiet", "--json", "-", *options],
                              capture_output=True, text=True)
         if ran.returncode == 2:

@@ -405,7 +405,7 @@ class Options(unittest.TestCase):
                 self.assertAlmostEqual(float(moment) / exact["moment"], 1, 5)
 
     def test_any_name(self):
-        """What closes a comment or a text of a language, or begins an escape."""
+        """Characters that close a comment or a text of a language, or begin an escape."""
         with tempfile.TemporaryDirectory() as folder:
             files = [Path(folder, f"law.{ending}") for ending in ("h", "py", "table", "inp", "xml", "sdf")]
             words = [word for file in files for word in ("--write", file)]

@@ -86,7 +86,7 @@ def scaled(law, limit=1.0, stiffness=1.0):
 
 
 def masing(t, law, before=()):
-    """By the stack of reversals (twist, moment) that the contact remembers."""
+    """Masing's rule by a stack of the open reversals (twist, moment)."""
     stack, out, direction = list(before), [], 0.0
     for last, now in zip(np.concatenate([[before[-1][0] if before else 0.0], t[:-1]]), t):
         sign = now - last

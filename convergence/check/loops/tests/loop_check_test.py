@@ -1,5 +1,5 @@
-"""loop_check_test.py PROGRAM SCENES: loops of the paper's sphere, made here by laws right and wrong, and what slipstick check
-says of them. The exact law is Lubkin's, by its parametric form and arithmetic-geometric means; nothing of the program's."""
+"""loop_check_test.py PROGRAM SCENES: loops of the paper's sphere, made here by laws right and wrong, and their verdicts by
+slipstick check. The exact law is Lubkin's, by its parametric form and arithmetic-geometric means; nothing of the program's."""
 
 import json
 import math
