@@ -12,7 +12,7 @@ BEGINNING = re.compile(
     r"|\b(?:message|why|warning|reason|advice|note|\w+_note|trouble)(?:\"\])?\s*\+?=(?![=\\])")
 RAISING = re.compile(r"\braise InputError\(")
 # In these files every text is a reason.
-WHOLE = ("convergence/gates/gate.cpp", "convergence/check/diagnosis.cpp", "convergence/check/verdict.cpp",
+WHOLE = ("convergence/gates/gate.cpp", "convergence/check/diagnosis.hpp", "convergence/check/verdict.cpp",
          "convergence/oracle/oracle.cpp", "bench/compare/obstacles.cpp", "bench/timing/invalid_reason.cpp")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"(?:\s*"((?:[^"\\\n]|\\.)*)")*')
 SHORTEST = 12  # characters; a shorter text could occur anywhere

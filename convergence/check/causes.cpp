@@ -56,28 +56,28 @@ std::vector<MistakenScene> mistaken_scenes(const Scene& scene) {
     const auto member = each.member;
     const Material& body = scene.*member;
     if (!std::isinf(body.young_modulus)) {
-      add({Mistake::one_compliance}, [&](Scene& s) {
+      add({mistake::one_compliance}, [&](Scene& s) {
         s.*member = {std::numeric_limits<double>::infinity(), 0.0};
       });
     }
     if (!body.coating) continue;
-    add({.mistake = Mistake::layer_ignored, .subject = each.name},
+    add({.mistake = mistake::layer_ignored, .subject = each.name},
         [&](Scene& s) { (s.*member).coating.reset(); });
-    add({.mistake = Mistake::layer_exchanged, .subject = each.name}, [&](Scene& s) {
+    add({.mistake = mistake::layer_exchanged, .subject = each.name}, [&](Scene& s) {
       Material& other = s.*member;
       std::swap(other.young_modulus, other.coating->young_modulus);
       std::swap(other.poisson_ratio, other.coating->poisson_ratio);
     });
   }
   if (is_coated(scene))
-    add({Mistake::layer_on_other_body}, [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
-  if (scene.layer.kind != nullptr) add({Mistake::layer_between_ignored}, [](Scene& s) { s.layer = {}; });
+    add({mistake::layer_on_other_body}, [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
+  if (scene.layer.kind != nullptr) add({mistake::layer_between_ignored}, [](Scene& s) { s.layer = {}; });
   for (const double factor : {0.5, 2.0}) {
-    add({Mistake::compliance_factor, factor}, [&](Scene& s) {
+    add({mistake::compliance_factor, factor}, [&](Scene& s) {
       for (const Body& body : kBodies) (s.*body.member).young_modulus /= factor;
     });
     if (scene.surfaces.size() == 1 && scene.surfaces.front().shape == solver::Shape::sphere)
-      add({Mistake::radius_factor, factor}, [&](Scene& s) { s.surfaces.front().radius *= factor; });
+      add({mistake::radius_factor, factor}, [&](Scene& s) { s.surfaces.front().radius *= factor; });
   }
   return mistakes;
 }
@@ -120,7 +120,7 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
       (scene.*of).coating->thickness *= times;
       return off_from(e, scene);
     });
-    if (off <= allowed) return Cause{Mistake::layer_thickness, factor * thickness, thickness, name};
+    if (off <= allowed) return Cause{mistake::layer_thickness, factor * thickness, thickness, name};
   }
   const auto [factor, off] = nearest_factor([&](double times) {
     Scene scene = e.scene;
@@ -131,7 +131,7 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
     }
     return off_from(e, scene);
   });
-  return off <= allowed ? std::optional(Cause{Mistake::modulus_factor, factor}) : std::nullopt;
+  return off <= allowed ? std::optional(Cause{mistake::modulus_factor, factor}) : std::nullopt;
 }
 
 /// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with
@@ -165,7 +165,7 @@ std::optional<Cause> lost_rows(const Examination& e, double allowed) {
   const auto lost = ((found == 0.0) && (right > kCarriesSomething * right.maxCoeff())).count();
   const double off = (there * (found - right).abs()).sum() / (there * right).sum();
   if (lost == 0 || !(off <= allowed)) return std::nullopt;
-  return Cause{Mistake::lost_rows, static_cast<double>(lost)};
+  return Cause{mistake::lost_rows, static_cast<double>(lost)};
 }
 
 /// Whether a pressure that is infinite somewhere has the exact values at cell centres, which miss its load.
@@ -189,16 +189,16 @@ Cause twist_mistake(const Examination& e, double allowed) {
   const double upper = compliance(e.scene.upper);
   const auto& exact = e.exact.oracle;
   const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
-  for (const auto& [ratio, cause] : {Ratio{lower / (lower + upper), {Mistake::one_compliance}},
-                                     {upper / (lower + upper), {Mistake::one_compliance}},
-                                     {2.0, {Mistake::compliance_factor, 2.0}},
-                                     {180.0 / std::numbers::pi, {Mistake::twist_in_degrees}},
-                                     {1e3, {Mistake::twist_in_mrad}},
-                                     {-1.0, {Mistake::twist_sign}},
-                                     {normalised, {Mistake::normalised_twist}}}) {
+  for (const auto& [ratio, cause] : {Ratio{lower / (lower + upper), {mistake::one_compliance}},
+                                     {upper / (lower + upper), {mistake::one_compliance}},
+                                     {2.0, {mistake::compliance_factor, 2.0}},
+                                     {180.0 / std::numbers::pi, {mistake::twist_in_degrees}},
+                                     {1e3, {mistake::twist_in_mrad}},
+                                     {-1.0, {mistake::twist_sign}},
+                                     {normalised, {mistake::normalised_twist}}}) {
     if (std::abs(e.state.twist / e.fitted.twist / ratio - 1.0) <= allowed) return cause;
   }
-  return {Mistake::other_twist, e.fitted.twist};
+  return {mistake::other_twist, e.fitted.twist};
 }
 
 /// Tractions that are right under a smaller load than the scene's: of the step before the last of N equal
@@ -213,11 +213,11 @@ std::optional<Cause> late_step(const Examination& e, const Verdict& verdict) {
   const double steps = std::round(-1.0 / *error);
   const double apart = std::abs(1.0 + *error * steps) / steps;
   if (steps <= kMostSteps && apart <= std::min(verdict.allowed.moment, 0.05 / (steps * (steps + 1.0))))
-    return Cause{Mistake::late_step, steps};
+    return Cause{mistake::late_step, steps};
   const bool twist_of_scene =
       e.twist_given && e.exact.oracle && !verdict.holds("twist") &&
       std::abs(relative_error(e.state.twist, e.exact.oracle->twist_angle)) <= verdict.allowed.motion;
-  return twist_of_scene ? std::optional(Cause{Mistake::late_step_by_twist}) : std::nullopt;
+  return twist_of_scene ? std::optional(Cause{mistake::late_step_by_twist}) : std::nullopt;
 }
 
 /// A wrong kernel, with the twist that follows from it.
@@ -251,7 +251,7 @@ std::vector<Cause> causes_in_tractions(const Examination& e, const Verdict& verd
   } else if (!directions_explain(e.contact, e.reference.right, allowed.tractions)) {
     return causes;
   }
-  if (directions) causes.push_back({Mistake::kept_directions});
+  if (directions) causes.push_back({mistake::kept_directions});
   return causes;
 }
 
@@ -272,7 +272,7 @@ Explanation explain(const Examination& e, const Verdict& verdict) {
   const bool right_pressure = all_hold({"normal_load_error", "pressure"});
   if (!right_pressure) {
     if (is_sampled_singularity(e)) {
-      found.causes = {{Mistake::sampled_singularity}};
+      found.causes = {{mistake::sampled_singularity}};
     } else if (const auto lost = lost_rows(e, verdict.allowed.pressure)) {
       found.causes = {*lost};
     } else if (verdict.holds("normal_load_error")) {

@@ -44,23 +44,6 @@ struct FieldState {
   std::array<double, 2> force, displacement;
 };
 
-/// Errors of these numbers, relative to the exact answer and signed.
-struct StateErrors {
-  StateErrors(const FieldState& state, const Examination& e, const Oracle& exact)
-      : twist(relative_error(e.state.twist, exact.twist_angle)),
-        moment(relative_error(state.moment, exact.moment)),
-        stick_radius(relative_error(state.stick.radius, exact.stick_radius)),
-        stick_radius_counted(relative_error(state.stick.counted_radius, exact.stick_radius)),
-        contact_radius(relative_error(state.contact_radius, exact.contact_radius)) {}
-
-  double twist, moment, stick_radius, stick_radius_counted, contact_radius;
-};
-
-std::optional<StateErrors> errors_of(const FieldState& state, const Examination& e) {
-  if (!e.exact.oracle) return std::nullopt;
-  return StateErrors(state, e, *e.exact.oracle);
-}
-
 TractionError traction_error_of(const Examination& e, const Eigen::ArrayXd& traction) {
   return traction_error(e.contact.stress_unit * traction, *e.exact.oracle, e.contact.grid_in_m());
 }
@@ -114,8 +97,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
 
 Json errors_json(const FieldState& state, const Examination& e) {
   Json json = Json::object();
-  const auto errors = errors_of(state, e);
-  if (!errors) {
+  if (!e.exact.oracle) {
     for (const char* key : {"twist_error", "moment_error", "stick_radius_error", "contact_radius_error",
                             "pressure_error", "traction_error"})
       set_missing(json, key, e.exact.reason);
@@ -123,14 +105,14 @@ Json errors_json(const FieldState& state, const Examination& e) {
   }
   const Oracle& exact = *e.exact.oracle;
   const std::string& unknown = unknown_text(exact);
-  const auto set = [&](const char* key, double error, double of) {
-    set_number(json, key, error, std::isnan(of) ? unknown : kNoNumber);
+  const auto set = [&](const char* key, double value, double right) {
+    set_number(json, key, relative_error(value, right), std::isnan(right) ? unknown : kNoNumber);
   };
-  set("twist_error", errors->twist, exact.twist_angle);
-  set("moment_error", errors->moment, exact.moment);
-  set("stick_radius_error", errors->stick_radius, exact.stick_radius);
-  set("stick_radius_counted_error", errors->stick_radius_counted, exact.stick_radius);
-  set("contact_radius_error", errors->contact_radius, exact.contact_radius);
+  set("twist_error", e.state.twist, exact.twist_angle);
+  set("moment_error", state.moment, exact.moment);
+  set("stick_radius_error", state.stick.radius, exact.stick_radius);
+  set("stick_radius_counted_error", state.stick.counted_radius, exact.stick_radius);
+  set("contact_radius_error", state.contact_radius, exact.contact_radius);
   const GivenContact& c = e.contact;
   json.update(
       {{"pressure_error", to_json(make_field_error(
@@ -151,8 +133,8 @@ Json reference_json(const Examination& e) {
             {"distance", e.deviation.tractions},
             {"noise", reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff()}};
   if (e.exact.oracle && e.exact.oracle->shear) {
-    json.update(
-        {{"traction_error", traction_error_json(traction_error_of(e, reference.right.traction), kNoNumber)}});
+    json.update({{"traction_error",
+                  to_json(make_traction_error(traction_error_of(e, reference.right.traction), kNoNumber))}});
   }
   return json;
 }
@@ -174,18 +156,14 @@ std::vector<std::string> faults_within_mesh(const FieldCheck& check) {
   return faults;
 }
 
-std::string number(double value, const char* format = "{:.6g}") {
-  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
-}
-
 std::string field_text(const FieldCheck& check) {
   const Examination& e = check.examination;
   const solver::Grid& grid = e.read.field.grid;
   std::string text = text_line("field", check.file.string());
-  text +=
-      text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick", grid.n1, grid.n2,
-                                    number(grid.h1), number(grid.h2), (e.contact.pressure > 0.0).count(),
-                                    (stick_cells(e.contact) > 0.0).count()));
+  text += text_line(
+      "grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick", grid.n1, grid.n2,
+                          number_text(grid.h1), number_text(grid.h2), (e.contact.pressure > 0.0).count(),
+                          (stick_cells(e.contact) > 0.0).count()));
   for (const auto& notes : {e.read.mistakes, e.read.conventions}) {
     for (const std::string& note : notes) text += text_line("note", note);
   }
@@ -194,22 +172,23 @@ std::string field_text(const FieldCheck& check) {
 
 std::string state_text(const Examination& e) {
   const FieldState state(e);
-  const auto errors = errors_of(state, e);
-  const auto error = [&](double StateErrors::*part) {
+  const auto error = [&](double found, double Oracle::*right) {
     constexpr double kNone = 1e-6;
-    const double value = errors ? (*errors).*part : NAN;
+    const double value = e.exact.oracle ? relative_error(found, (*e.exact.oracle).*right) : NAN;
     if (!std::isfinite(value)) return std::string();
     return std::abs(value) < kNone ? "   (no error)" : fmt::format("   (error {:+.1e})", value);
   };
-  return text_line("normal load", number(state.normal_load) + " N") +
-         text_line("contact radius",
-                   number(state.contact_radius) + " m" + error(&StateErrors::contact_radius)) +
-         text_line("moment", fmt::format("{} N m, at most {}{}", number(state.moment),
-                                         number(state.moment_limit), error(&StateErrors::moment))) +
-         text_line("twist", number(e.state.twist) + " rad" +
+  return text_line("normal load", number_text(state.normal_load) + " N") +
+         text_line("contact radius", number_text(state.contact_radius) + " m" +
+                                         error(state.contact_radius, &Oracle::contact_radius)) +
+         text_line("moment",
+                   fmt::format("{} N m, at most {}{}", number_text(state.moment),
+                               number_text(state.moment_limit), error(state.moment, &Oracle::moment))) +
+         text_line("twist", number_text(e.state.twist) + " rad" +
                                 (e.twist_given ? "" : ", which fits the tractions") +
-                                error(&StateErrors::twist)) +
-         text_line("stick radius", number(state.stick.radius) + " m" + error(&StateErrors::stick_radius));
+                                error(e.state.twist, &Oracle::twist_angle)) +
+         text_line("stick radius",
+                   number_text(state.stick.radius) + " m" + error(state.stick.radius, &Oracle::stick_radius));
 }
 
 std::string traction_text(const Examination& e) {
@@ -217,19 +196,19 @@ std::string traction_text(const Examination& e) {
   const FieldError found = traction_error_of(e, e.contact.traction).at_centres;
   if (!std::isfinite(found.l1)) return text_line("exact answer", unknown_text(*e.exact.oracle));
   const FieldError right = traction_error_of(e, e.reference.right.traction).at_centres;
-  return text_line("traction error",
-                   fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}", number(found.l1),
-                               number(found.l2), number(right.l1), number(right.l2)));
+  return text_line("traction error", fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}",
+                                                 number_text(found.l1), number_text(found.l2),
+                                                 number_text(right.l1), number_text(right.l2)));
 }
 
 std::string certificate_text(const Examination& e) {
-  return text_line(
-             "certificate",
-             fmt::format("moment off by {}, |q| above {} by {}", number(e.certificate.moment),
-                         solver::bound_text(e.scene.friction.kind), number(e.certificate.friction_bound))) +
+  return text_line("certificate",
+                   fmt::format("moment off by {}, |q| above {} by {}", number_text(e.certificate.moment),
+                               solver::bound_text(e.scene.friction.kind),
+                               number_text(e.certificate.friction_bound))) +
          text_line("slip direction",
-                   fmt::format("{} degrees off in the mean, {} at most ({}: 0)", number(e.direction.mean),
-                               number(e.direction.max), e.scene.friction.is_coulomb() ? "Coulomb" : "right"));
+                   fmt::format("{} degrees off in the mean, {} at most ({})", number_text(e.direction.mean),
+                               number_text(e.direction.max), right_direction_text(e.scene.friction.kind)));
 }
 
 }  // namespace
@@ -340,7 +319,7 @@ std::string check_text(const FieldCheck& check) {
   for (const Judged& item : check.verdict.judged) {
     text += text_line(item.holds() ? "holds" : "FAILS",
                       fmt::format("{:<20} {:>8}   allowed on this grid {}", item.quantity,
-                                  number(item.value, "{:.1e}"), number(item.allowed, "{:.1e}")));
+                                  number_text(item.value, "{:.1e}"), number_text(item.allowed, "{:.1e}")));
   }
   return text;
 }

@@ -31,7 +31,7 @@ Eigen::ArrayXd resized(const solver::Grid& from, const solver::Grid& to, const E
 
 /// The pressure of the scene's own normal contact, in the units of `contact`. `grid` is enlarged until it
 /// covers the scene's grid. None without a normal load. Measured surfaces, pressures from files and pressures
-/// that shear changes exist only on the scene's grid: none where its cells and those of `grid` differ.
+/// that shear changes exist only on the scene's grid: none where `grid` has other cells.
 std::optional<Eigen::ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                              const solver::Model& model, solver::Grid& grid);
 

@@ -16,58 +16,6 @@ namespace {
 using Eigen::ArrayXd;
 using solver::Index;
 
-/// A mistake in words: {0} is the number found, {1} the expected one, {2} the subject.
-struct Sentence {
-  Mistake mistake;
-  const char* text;
-};
-constexpr Sentence kSentences[] = {
-    {Mistake::none, "as it should be"},
-    {Mistake::cross_kernel_even,
-     "the cross kernel K12, odd in x1 and in x2, is mirrored as an even function"},
-    {Mistake::cross_kernel_missing, "the cross kernel K12 is missing"},
-    {Mistake::cross_kernel_sign,
-     "the cross kernel K12 has the wrong sign, or the rotation field is (x2, x1) instead of (-x2, x1)"},
-    {Mistake::cross_kernel_factor, "the cross kernel K12 is multiplied by {0:.3g}"},
-    {Mistake::kernels_exchanged, "the kernels K11 and K22 are exchanged"},
-    {Mistake::no_poisson_ratio, "Poisson's ratio is taken as zero"},
-    {Mistake::poisson_ratio, "Poisson's ratio is {0:.3g} instead of {1:.3g}"},
-    {Mistake::coupling_missing, "the kernels K13 and K23 are missing"},
-    {Mistake::coupling_sign, "the kernels K13 and K23 have the wrong sign"},
-    {Mistake::coupling_factor, "the kernels K13 and K23 are multiplied by {0:.3g}"},
-    {Mistake::friction_coefficient, "the friction coefficient is {0:.4g} instead of {1:.4g}"},
-    {Mistake::friction_factor, "the friction bound is multiplied by {0:.4g}"},
-    {Mistake::tresca_friction,
-     "the law of friction is Tresca's, with a shear strength of {0:.4g} Pa, instead of {2}"},
-    {Mistake::mean_friction,
-     "the law of friction is Tresca's, with a shear strength of {0:.4g} Pa, mu times the mean pressure, "
-     "instead of {2}"},
-    {Mistake::coulomb_friction,
-     "the law of friction is Coulomb's, with a coefficient of {0:.4g}, instead of {2}"},
-    {Mistake::power_friction, "the law of friction is |q| = k p^n with n = {0:.2f} instead of {2}"},
-    {Mistake::kept_directions, "slipping cells keep a direction that does not oppose their slip"},
-    {Mistake::sampled_singularity,
-     "a pressure with an infinite value is sampled at cell centres instead of averaged over cells"},
-    {Mistake::lost_rows, "the file lacks rows: {0:.0f} cells where the scene has pressure have none"},
-    {Mistake::late_step,
-     "the tractions are one step late: they belong to the step before the last of {0:.0f} equal steps"},
-    {Mistake::late_step_by_twist,
-     "the tractions are one step late: only the twist belongs to the scene's load"},
-    {Mistake::one_compliance, "only one body's compliance is counted"},
-    {Mistake::compliance_factor, "the compliance of the pair is multiplied by {0:.3g}"},
-    {Mistake::radius_factor, "the radius is multiplied by {0:.3g}"},
-    {Mistake::modulus_factor, "the elastic moduli are multiplied by {0:.3g}"},
-    {Mistake::layer_ignored, "the layer on the {2} body is ignored"},
-    {Mistake::layer_exchanged, "the constants of the {2} body and of its layer are exchanged"},
-    {Mistake::layer_on_other_body, "the layer is on the other body"},
-    {Mistake::layer_between_ignored, "the layer between the bodies is ignored"},
-    {Mistake::layer_thickness, "the layer on the {2} body is {0:.3g} m thick instead of {1:.4g} m"},
-    {Mistake::twist_in_degrees, "the twist is in degrees"},
-    {Mistake::twist_in_mrad, "the twist is in mrad"},
-    {Mistake::twist_sign, "the twist has the opposite sign"},
-    {Mistake::normalised_twist, "the twist is the normalised one, G a^2 phi/(mu W)"},
-    {Mistake::other_twist, "the twist does not belong to these tractions, whose own is {0:.6g} rad"}};
-
 /// Pairs of cells in a sum: about a second's work.
 constexpr double kMaxPairs = 1e8;
 /// An assumption explains a gap if it lowers it to this part.
@@ -193,7 +141,7 @@ class Trial {
     const double times = best_multiple(by_pressure_);
     constexpr double kNear = 0.05;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.cause = {Mistake::coupling_factor, times}, .by_pressure = times};
+    return Assumption{.cause = {mistake::coupling_factor, times}, .by_pressure = times};
   }
 
   /// The kernel K12 times the factor that fits best.
@@ -201,7 +149,7 @@ class Trial {
     const double times = best_multiple(pair_.poisson_compliance * u_.cross);
     constexpr double kNear = 0.1;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.cause = {Mistake::cross_kernel_factor, times}, .cross = times};
+    return Assumption{.cause = {mistake::cross_kernel_factor, times}, .cross = times};
   }
 
   /// The Poisson's ratio that fits best; none where no body has it.
@@ -210,7 +158,7 @@ class Trial {
     const double own = pair_.poisson_compliance / pair_.shear_compliance;
     const double ratio = change * own;
     if (!(ratio > 0.0 && ratio <= 0.5 && own > 0.0)) return std::nullopt;
-    return Assumption{.cause = {Mistake::poisson_ratio, ratio, own}, .poisson = change, .cross = change};
+    return Assumption{.cause = {mistake::poisson_ratio, ratio, own}, .poisson = change, .cross = change};
   }
 
  private:
@@ -246,17 +194,17 @@ class Trial {
 
 std::vector<Hypothesis> try_kernels(const Trial& trial) {
   std::vector<Assumption> assumptions{
-      {.cause = {Mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
-      {.cause = {Mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
-      {.cause = {Mistake::cross_kernel_missing}, .cross = 0.0},
-      {.cause = {Mistake::cross_kernel_sign}, .cross = -1.0},
-      {.cause = {Mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
-      {.cause = {Mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
+      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
+      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
+      {.cause = {mistake::cross_kernel_missing}, .cross = 0.0},
+      {.cause = {mistake::cross_kernel_sign}, .cross = -1.0},
+      {.cause = {mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
+      {.cause = {mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
   if (const auto times = trial.best_cross()) assumptions.push_back(*times);
   if (trial.coupled()) {
-    assumptions.push_back({.cause = {Mistake::coupling_missing}, .by_pressure = 0.0});
-    assumptions.push_back({.cause = {Mistake::coupling_sign}, .by_pressure = -1.0});
+    assumptions.push_back({.cause = {mistake::coupling_missing}, .by_pressure = 0.0});
+    assumptions.push_back({.cause = {mistake::coupling_sign}, .by_pressure = -1.0});
     if (const auto times = trial.best_coupling()) assumptions.push_back(*times);
   }
   std::vector<Hypothesis> tried;
@@ -332,8 +280,8 @@ PowerShown power_shown(const GivenContact& c) {
 
 OtherFriction multiple_of_law(const GivenContact& c, double factor) {
   const solver::FrictionLaw& law = c.friction;
-  return {law.is_coulomb() ? Cause{Mistake::friction_coefficient, factor * law.coefficient, law.coefficient}
-                           : Cause{Mistake::friction_factor, factor},
+  return {law.is_coulomb() ? Cause{mistake::friction_coefficient, factor * law.coefficient, law.coefficient}
+                           : Cause{mistake::friction_factor, factor},
           factor * c.friction_bound};
 }
 
@@ -351,13 +299,13 @@ std::optional<OtherFriction> other_law(const GivenContact& c) {
   const bool same = (law.is_coulomb() && is(1.0)) || (law.kind == solver::FrictionKind::tresca && is(0.0)) ||
                     (law.kind == solver::FrictionKind::power && is(law.exponent));
   if (same) return std::nullopt;  // nearly the scene's law: something else is wrong
-  Cause cause{.mistake = Mistake::power_friction, .found = shown.exponent};
+  Cause cause{.mistake = mistake::power_friction, .found = shown.exponent};
   if (is(0.0)) {
     const double mean = law.coefficient * c.pressure.sum() / static_cast<double>((c.pressure > 0.0).count());
     const bool of_mean = law.is_coulomb() && std::abs(shown.coefficient / mean - 1.0) <= kSameMean;
-    cause = {of_mean ? Mistake::mean_friction : Mistake::tresca_friction, shown.coefficient * c.stress_unit};
+    cause = {of_mean ? mistake::mean_friction : mistake::tresca_friction, shown.coefficient * c.stress_unit};
   } else if (is(1.0)) {
-    cause = {Mistake::coulomb_friction, shown.coefficient};
+    cause = {mistake::coulomb_friction, shown.coefficient};
   }
   cause.subject =
       fmt::format("\"{}\"{}", solver::to_string(law.kind),
@@ -369,8 +317,7 @@ std::optional<OtherFriction> other_law(const GivenContact& c) {
 }  // namespace
 
 std::string sentence(const Cause& cause) {
-  const auto found = std::ranges::find(kSentences, cause.mistake, &Sentence::mistake);
-  return fmt::format(fmt::runtime(found->text), cause.found, cause.expected, cause.subject) + cause.note;
+  return fmt::format(fmt::runtime(cause.mistake), cause.found, cause.expected, cause.subject) + cause.note;
 }
 
 std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,

@@ -1,4 +1,4 @@
-#include "convergence/exchange/program_solve.hpp"
+#include "convergence/exchange/exchange_files.hpp"
 
 #include <fmt/core.h>
 
@@ -68,25 +68,22 @@ std::string write_array(const SolverProgram& program, const ExchangeFiles& files
 }
 
 Json body_json(const solver::Material& body) {
-  const bool rigid = std::isinf(body.young_modulus);
-  Json json{{"rigid", rigid}, {"young_modulus", nullptr}, {"poisson_ratio", nullptr}};
-  if (!rigid) json["young_modulus"] = body.young_modulus;
-  if (!rigid) json["poisson_ratio"] = body.poisson_ratio;
-  return json;
+  if (std::isinf(body.young_modulus))
+    return {{"rigid", true}, {"young_modulus", nullptr}, {"poisson_ratio", nullptr}};
+  return {{"rigid", false}, {"young_modulus", body.young_modulus}, {"poisson_ratio", body.poisson_ratio}};
 }
 
 Json load_json(const solver::Step& step) {
-  Json load{{"normal", nullptr}};
-  if (step.normal) load["normal"] = *step.normal;
+  Json load{{"normal", step.normal ? Json(*step.normal) : Json()}};
   if (const auto twist = solver::value_if<solver::Twist>(step.torsion)) {
-    load["twist"] = *twist;
+    load.update({{"twist", *twist}});
   } else {
-    load["moment"] = solver::value_if<solver::Moment>(step.torsion).value_or(0.0);
+    load.update({{"moment", solver::value_if<solver::Moment>(step.torsion).value_or(0.0)}});
   }
   if (step.displacement) {
-    load["displacement"] = *step.displacement;
+    load.update({{"displacement", *step.displacement}});
   } else {
-    load["force"] = step.force;
+    load.update({{"force", step.force}});
   }
   return load;
 }

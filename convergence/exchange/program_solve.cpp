@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "convergence/exchange/exchange_files.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,8 +1,6 @@
 #pragma once
 
 #include "convergence/exchange/allowed_programs.hpp"
-#include "convergence/exchange/given_fields.hpp"
-#include "convergence/exchange/solver_program.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/solve_record.hpp"
 #include "solver/scene/scene.hpp"
@@ -30,26 +28,5 @@ struct ProgramAnswer {
 /// methods. Throws ProgramFailure where the program fails; InputError for a scene that it does not solve, and
 /// a history.
 ProgramAnswer solve_by_program(const solver::Scene& scene, const AllowedPrograms& allowed);
-
-// ---------------------------------------------------------------- the files of an exchange,
-// docs/schema/exchange.schema.json (exchange_files.cpp)
-
-/// Writes the scene's numbers: grid, cell centres, materials, loads; and the gap and a given pressure as
-/// files of their own.
-void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
-                    const PosedScene& posed);
-
-/// The fields that a program wrote; tractions are zero and `tractions` is false where it found only the
-/// pressure. Throws ProgramFailure for a file that is missing, broken or of another grid, that holds no
-/// finite number or a negative pressure, or that carries another normal load.
-struct ReadFields {
-  GivenFields fields;
-  bool tractions;
-};
-ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
-                         const PosedScene& posed);
-
-/// The program's own numbers, if it wrote any: twist_angle (rad), iterations, seconds, converged, message.
-OwnNumbers read_own_numbers(const SolverProgram& program, const ExchangeFiles& files);
 
 }  // namespace slipstick::convergence

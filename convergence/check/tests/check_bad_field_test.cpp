@@ -59,11 +59,11 @@ TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
                            {fmt::format("load.moment={}", solution_.moment), "contact.friction=0.098"})),
            scene_,
            AllOf(Not(Breaks("moment_error")), IsOff("friction", -0.02),
-                 names(Mistake::friction_coefficient, 0.098)));
+                 names(mistake::friction_coefficient, 0.098)));
 }
 
 TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
-  find_bad(rows_, scene_, AllOf(IsOff("twist", 0.01), names(Mistake::other_twist, solution_.twist_angle)),
+  find_bad(rows_, scene_, AllOf(IsOff("twist", 0.01), names(mistake::other_twist, solution_.twist_angle)),
            1.01 * solution_.twist_angle);
 }
 
@@ -80,11 +80,11 @@ class CheckBadField : public testing::Test {
 
 TEST_F(CheckBadField, AnotherFrictionCoefficient) {
   find_bad(with_tractions_times(rows_, 0.95), scene_,
-           AllOf(IsOff("moment_error", -0.05), names(Mistake::friction_coefficient, 0.095)));
+           AllOf(IsOff("moment_error", -0.05), names(mistake::friction_coefficient, 0.095)));
   for (const double factor : {1.05, 1.2}) {  // the second beyond what friction can carry
     const Json result =
         find_bad(with_tractions_times(rows_, factor), scene_,
-                 AllOf(Breaks("friction_bound"), names(Mistake::friction_coefficient, 0.1 * factor)));
+                 AllOf(Breaks("friction_bound"), names(mistake::friction_coefficient, 0.1 * factor)));
     // Displacements and the twist that fits them grow with the tractions.
     EXPECT_NEAR(result["twist_angle"].get<double>() / solution_.twist_angle, factor, 1e-3);
   }
@@ -184,23 +184,23 @@ TEST(CheckSlidingField, IsNotARightOneNextToTheLimit) {
 
 TEST_F(CheckBadField, Twists) {
   const double twist = solution_.twist_angle;
-  find_bad(rows_, scene_, AllOf(IsOff("twist", -0.5), names(Mistake::one_compliance)), 0.5 * twist);
-  find_bad(rows_, scene_, names(Mistake::compliance_factor, 2.0), 2.0 * twist);
-  find_bad(rows_, scene_, names(Mistake::twist_in_degrees), twist * 180.0 / std::numbers::pi);
+  find_bad(rows_, scene_, AllOf(IsOff("twist", -0.5), names(mistake::one_compliance)), 0.5 * twist);
+  find_bad(rows_, scene_, names(mistake::compliance_factor, 2.0), 2.0 * twist);
+  find_bad(rows_, scene_, names(mistake::twist_in_degrees), twist * 180.0 / std::numbers::pi);
   const double normalised = find_oracle(scene_).oracle->state.twist;
-  find_bad(rows_, scene_, names(Mistake::normalised_twist), normalised);
+  find_bad(rows_, scene_, names(mistake::normalised_twist), normalised);
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
 }
 
 TEST_F(CheckBadField, TwistInMilliradians) {
-  find_bad(rows_, scene_, names(Mistake::twist_in_mrad), 1e3 * solution_.twist_angle);
+  find_bad(rows_, scene_, names(mistake::twist_in_mrad), 1e3 * solution_.twist_angle);
 }
 
 // The step before the last of four, written with the pressure of the last.
 TEST(CheckCause, TractionsOneStepLate) {
   const solver::Scene scene = scene_of("paper", 40);
-  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, names(Mistake::late_step, 4.0));
-  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene, Not(names(Mistake::late_step)));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.675"})), scene, names(mistake::late_step, 4.0));
+  find_bad(solved(scene_of("paper", 40, {"load.moment_ratio=0.775"})), scene, Not(names(mistake::late_step)));
 }
 
 TEST(CheckCause, RowsAreLost) {
@@ -210,9 +210,9 @@ TEST(CheckCause, RowsAreLost) {
     const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
     FieldRows inside = rows;
     inside.erase(inside.begin() + (middle - rows.begin()), inside.begin() + (middle - rows.begin()) + 5);
-    find_bad(inside, scene, names(Mistake::lost_rows, 5.0));
+    find_bad(inside, scene, names(mistake::lost_rows, 5.0));
     rows.resize(rows.size() - rows.size() / 10);
-    find_bad(rows, scene, names(Mistake::lost_rows));
+    find_bad(rows, scene, names(mistake::lost_rows));
   }
 }
 
@@ -220,21 +220,21 @@ TEST(CheckCause, AnotherLayer) {
   const std::vector<std::string> layer{"lower.layer={thickness=1e-4,young_modulus=420e9,poisson_ratio=0.25}",
                                        "contact.coupling=none"};
   const solver::Scene scene = scene_of("paper", 40, layer);
-  find_bad(solved(scene_of("paper", 40)), scene, names(Mistake::layer_ignored));
+  find_bad(solved(scene_of("paper", 40)), scene, names(mistake::layer_ignored));
   find_bad(solved(scene_of("paper", 32, {layer[0], layer[1], "lower.layer.thickness=3e-4"})), scene,
-           names(Mistake::layer_thickness, 3e-4));
+           names(mistake::layer_thickness, 3e-4));
   find_bad(solved(scene_of("paper", 40,
                            {layer[0], layer[1], "lower.young_modulus=420e9", "lower.poisson_ratio=0.25",
                             "lower.layer.young_modulus=210e9", "lower.layer.poisson_ratio=0.3"})),
-           scene, names(Mistake::layer_exchanged));
+           scene, names(mistake::layer_exchanged));
 }
 
 TEST(CheckCause, OtherModuli) {
   const solver::Scene scene = scene_of("paper", 40);
   find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=420e9", "lower.young_modulus=420e9"})), scene,
-           names(Mistake::one_compliance));
+           names(mistake::one_compliance));
   find_bad(solved(scene_of("paper", 40, {"upper.young_modulus=290e9", "lower.young_modulus=290e9"})), scene,
-           names(Mistake::modulus_factor, 1.38));
+           names(mistake::modulus_factor, 1.38));
 }
 
 TEST(CheckCause, PositionsFromTheGridsCornerAreAConvention) {

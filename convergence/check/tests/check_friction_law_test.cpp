@@ -32,15 +32,15 @@ TEST(CheckFrictionLaw, FindsRightFieldsGood) {
 }
 
 TEST(CheckFrictionLaw, NamesTheLawThatWasUsed) {
-  find_bad(solved(under({})), under(kTresca), names(Mistake::coulomb_friction, 0.1));
-  find_bad(solved(under({})), under(kPower), names(Mistake::coulomb_friction, 0.1));
-  find_bad(solved(under(kTresca)), under({}), names(Mistake::tresca_friction, 1e8));
+  find_bad(solved(under({})), under(kTresca), names(mistake::coulomb_friction, 0.1));
+  find_bad(solved(under({})), under(kPower), names(mistake::coulomb_friction, 0.1));
+  find_bad(solved(under(kTresca)), under({}), names(mistake::tresca_friction, 1e8));
 }
 
 TEST(CheckFrictionLaw, NamesAWrongStrength) {
   Settings stronger = kTresca;
   stronger.back() = "contact.shear_strength=1.1e8";
-  find_bad(solved(under(stronger)), under(kTresca), names(Mistake::friction_factor, 1.1));
+  find_bad(solved(under(stronger)), under(kTresca), names(mistake::friction_factor, 1.1));
 }
 
 // Cells that the edge cuts may carry a part of the strength; no cell carries more.
@@ -76,13 +76,13 @@ TEST(CheckFrictionLaw, NamesAnotherExponentAndTheMeanPressure) {
   Settings linear = kPower;
   linear[1] = "contact.friction=20";
   linear[2] = "contact.friction_exponent=0.75";
-  find_bad(solved(under(linear)), under(kPower), names(Mistake::power_friction, 0.75));
-  find_bad(solved(under(kPower)), under({}), names(Mistake::power_friction, 0.5));
+  find_bad(solved(under(linear)), under(kPower), names(mistake::power_friction, 0.75));
+  find_bad(solved(under(kPower)), under({}), names(mistake::power_friction, 0.5));
   const solver::Solution solution = solver::solve(under({}));
   const double mean =
       solution.normal_load / static_cast<double>(solution.contact_cells) / solution.grid.cell_area();
   find_bad(solved(under({kTresca[0], fmt::format("contact.shear_strength={}", 0.1 * mean)})), under({}),
-           names(Mistake::mean_friction));
+           names(mistake::mean_friction));
 }
 
 TEST(CheckFrictionLaw, SpeaksOfTheScenesLaw) {

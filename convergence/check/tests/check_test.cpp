@@ -38,11 +38,11 @@ TEST(Check, FindsAMirroredCrossKernel) {
   EXPECT_LE(std::abs(reported["moment_error"].get<double>()), 1e-6);
   EXPECT_NEAR(reported["twist_error"], -0.0607, 1e-4);
   EXPECT_THAT(reported, AllOf(Not(Breaks("moment_error")), IsOff("twist", -0.061), Breaks("slip_direction"),
-                              names(Mistake::cross_kernel_even), names(Mistake::kept_directions),
-                              Not(names(Mistake::other_twist))));
+                              names(mistake::cross_kernel_even), names(mistake::kept_directions),
+                              Not(names(mistake::other_twist))));
   const Checked inferred = check_peer("cgcontact");
   EXPECT_EQ(inferred["verdict"], "bad");
-  EXPECT_THAT(inferred, names(Mistake::cross_kernel_even));
+  EXPECT_THAT(inferred, names(mistake::cross_kernel_even));
   const Json& diagnosis = inferred["diagnosis"];
   EXPECT_TRUE(diagnosis["stick_area_explained"]);
   const Json& kernel = diagnosis["tried"][0];
@@ -365,7 +365,7 @@ TEST(Check, FindsTheFieldOfAnotherContactBad) {
 
 TEST(Check, SaysThatAnInfinitePressureCannotBeSampled) {
   const solver::Scene scene = scene_of("flat_punch");
-  find_bad(sampled(scene), scene, AllOf(Breaks("normal_load_error"), names(Mistake::sampled_singularity)));
+  find_bad(sampled(scene), scene, AllOf(Breaks("normal_load_error"), names(mistake::sampled_singularity)));
 }
 
 // On a circle frozen directions fade with the mesh, on an ellipse they do not.
@@ -375,7 +375,7 @@ TEST(Check, FindsThePapersMethodGoodOnACircleAndBadOnAnEllipse) {
     const Checked result = check_rows(solved(scene), scene);
     EXPECT_EQ(result["verdict"], verdict) << why(result);
     if (result["verdict"] == "good") continue;
-    EXPECT_THAT(result, AllOf(Breaks("slip_direction"), names(Mistake::kept_directions)));
+    EXPECT_THAT(result, AllOf(Breaks("slip_direction"), names(mistake::kept_directions)));
     EXPECT_TRUE(result["diagnosis"]["kernel"].is_null());
   }
 }
@@ -384,10 +384,10 @@ TEST(Check, FindsThePapersMethodGoodOnACircleAndBadOnAnEllipse) {
 TEST(Check, FindsMistakesInThePressuresTangentialDisplacement) {
   const solver::Scene scene = scene_of("dissimilar");
   find_bad(solved(scene_of("dissimilar", 32, {"contact.coupling=none"})), scene,
-           names(Mistake::coupling_missing));
+           names(mistake::coupling_missing));
   solver::Scene exchanged = scene;
   std::swap(exchanged.upper, exchanged.lower);
-  find_bad(solved(exchanged), scene, names(Mistake::coupling_sign));
+  find_bad(solved(exchanged), scene, names(mistake::coupling_sign));
 }
 
 // Bodies whose shear compliances 1/G and nu/G differ by half as much, with the same sums, move the surfaces
@@ -409,8 +409,8 @@ TEST(Check, DeterminesThePartOfThePressuresTangentialDisplacement) {
     body.poisson_ratio = nearer(poisson, k) / nearer(compliance, k);
     body.young_modulus = 2.0 * (1.0 + body.poisson_ratio) / nearer(compliance, k);
   }
-  find_bad(solved(half), whole, names(Mistake::coupling_factor, 0.5));
-  find_bad(solved(whole), half, names(Mistake::coupling_factor, 2.0));
+  find_bad(solved(half), whole, names(mistake::coupling_factor, 0.5));
+  find_bad(solved(whole), half, names(mistake::coupling_factor, 2.0));
 }
 
 }  // namespace

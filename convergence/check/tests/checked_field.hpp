@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
+#include "convergence/results/exact_result.hpp"
 #include "convergence/results/solution_fields.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/solve.hpp"
@@ -134,7 +135,7 @@ MATCHER_P(Names, cause, "") {
   });
 }
 
-inline auto names(Mistake mistake, double found = NAN) { return Names(Cause{mistake, found}); }
+inline auto names(std::string_view mistake, double found = NAN) { return Names(Cause{mistake, found}); }
 inline auto names_none() { return testing::Field(&Checked::causes, testing::IsEmpty()); }
 
 inline FieldRows solved(const solver::Scene& scene) { return rows_of(solver::solve(scene)); }

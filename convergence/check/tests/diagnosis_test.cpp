@@ -13,8 +13,8 @@
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/model/make_model.hpp"
-#include "solver/step/pressure.hpp"
 #include "solver/solve.hpp"
+#include "solver/step/pressure.hpp"
 #include "solver/step/tractions.hpp"
 
 namespace slipstick::convergence {
@@ -88,23 +88,23 @@ GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
 constexpr double kAllowed = 1e-3;
 
 TEST(Diagnosis, NamesTheKernelThatWasUsed) {
-  const std::vector<std::pair<CrossKernel, Mistake>> mistakes{
-      {[](double, int) { return 0.0; }, Mistake::cross_kernel_missing},
-      {[](double k12, int sign) { return -sign * k12; }, Mistake::cross_kernel_sign},
-      {[](double k12, int) { return -std::abs(k12); }, Mistake::cross_kernel_even},
-      {[](double k12, int) { return std::abs(k12); }, Mistake::cross_kernel_even}};
-  for (const auto& [cross, mistake] : mistakes) {
+  const std::vector<std::pair<CrossKernel, std::string_view>> mistakes{
+      {[](double, int) { return 0.0; }, mistake::cross_kernel_missing},
+      {[](double k12, int sign) { return -sign * k12; }, mistake::cross_kernel_sign},
+      {[](double k12, int) { return -std::abs(k12); }, mistake::cross_kernel_even},
+      {[](double k12, int) { return std::abs(k12); }, mistake::cross_kernel_even}};
+  for (const auto& [cross, expected] : mistakes) {
     const Diagnosis diagnosis = diagnose(computed_with(cross), {}, kAllowed);
-    SCOPED_TRACE(sentence({mistake}));
+    SCOPED_TRACE(sentence({expected}));
     ASSERT_TRUE(diagnosis.kernel);
-    EXPECT_EQ(diagnosis.kernel->cause.mistake, mistake);
+    EXPECT_EQ(diagnosis.kernel->cause.mistake, expected);
     EXPECT_LE(diagnosis.kernel->gap, 1e-6);
     EXPECT_GT(diagnosis.reference_kernel.gap, kAllowed);
     EXPECT_FALSE(diagnosis.friction);
     if (cross(1.0, 1) == cross(1.0, -1) && cross(1.0, 1) != 0.0) continue;
     const Diagnosis of_sphere = diagnose(computed_with(cross, false, "paper"), {}, 0.1);
     ASSERT_TRUE(of_sphere.kernel);
-    EXPECT_EQ(of_sphere.kernel->cause.mistake, mistake);
+    EXPECT_EQ(of_sphere.kernel->cause.mistake, expected);
   }
 }
 
@@ -129,7 +129,7 @@ TEST(Diagnosis, FindsAPartOfTheCrossKernelBadWhereTheMeshLeavesTractionsOpen) {
     if (part == 1.0) {
       find_good(rows, scene);
     } else {
-      find_bad(rows, scene, names(Mistake::cross_kernel_factor, part));
+      find_bad(rows, scene, names(mistake::cross_kernel_factor, part));
     }
   }
 }
@@ -138,7 +138,7 @@ TEST(Diagnosis, FindsAPartOfTheCrossKernelBadWhereTheMeshLeavesTractionsOpen) {
 TEST(Diagnosis, DistinguishesExchangedKernelsFromPoissonsRatio) {
   const Diagnosis diagnosis = diagnose(computed_with(right_cross, true), {}, kAllowed);
   ASSERT_TRUE(diagnosis.kernel);
-  EXPECT_EQ(diagnosis.kernel->cause.mistake, Mistake::kernels_exchanged);
+  EXPECT_EQ(diagnosis.kernel->cause.mistake, mistake::kernels_exchanged);
   EXPECT_LE(diagnosis.kernel->gap, 1e-6);
 }
 
@@ -165,7 +165,7 @@ TEST(Diagnosis, DeterminesPoissonsRatioFromTheField) {
   for (const double ratio : {0.1, 0.45}) {
     const Diagnosis diagnosis = diagnose(with_poissons_ratio(ratio), {}, 1e-5);
     ASSERT_TRUE(diagnosis.kernel) << ratio;
-    EXPECT_EQ(diagnosis.kernel->cause.mistake, Mistake::poisson_ratio);
+    EXPECT_EQ(diagnosis.kernel->cause.mistake, mistake::poisson_ratio);
     EXPECT_NEAR(diagnosis.kernel->cause.found, ratio, 5e-3 * ratio);
     EXPECT_NEAR(diagnosis.kernel->cause.expected, 0.3, 1e-9);
   }
@@ -177,14 +177,14 @@ TEST(Diagnosis, DeterminesPoissonsRatioOfDissimilarBodies) {
     const Diagnosis diagnosis =
         diagnose(computed_with(right_cross, false, "dissimilar", factor), {}, kAllowed);
     ASSERT_TRUE(diagnosis.kernel) << factor;
-    EXPECT_EQ(diagnosis.kernel->cause.mistake, Mistake::poisson_ratio);
+    EXPECT_EQ(diagnosis.kernel->cause.mistake, mistake::poisson_ratio);
     EXPECT_NEAR(diagnosis.kernel->cause.found, ratio, 0.01);
     EXPECT_LE(diagnosis.kernel->gap, 1e-5);
   }
   for (const char* name : {"dissimilar", "ellipse"}) {
     const Diagnosis diagnosis = diagnose(computed_with(right_cross, false, name, 1.8), {}, kAllowed);
     EXPECT_TRUE(std::ranges::none_of(diagnosis.tried, [](const Hypothesis& each) {
-      return each.cause.mistake == Mistake::poisson_ratio;
+      return each.cause.mistake == mistake::poisson_ratio;
     }));
   }
 }
@@ -212,7 +212,7 @@ TEST(Diagnosis, NamesNoKernelForAGapThatAnIterationLeaves) {
   const Diagnosis above = of(1.07 * off);
   EXPECT_NEAR(above.reference_kernel.stick_gap, 1.07e-4, 0.03e-4);
   ASSERT_TRUE(above.kernel);
-  EXPECT_EQ(above.kernel->cause.mistake, Mistake::poisson_ratio);
+  EXPECT_EQ(above.kernel->cause.mistake, mistake::poisson_ratio);
   EXPECT_NEAR(above.kernel->cause.found, 0.3, 5e-3);
 }
 

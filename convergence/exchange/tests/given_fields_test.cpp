@@ -19,7 +19,7 @@ GivenFields fields_of(const solver::Solution& solution) { return {solution.press
 
 class GivenFieldsOf : public testing::TestWithParam<std::vector<std::string>> {};
 
-// The fields of a solve obey Coulomb's law only under the solve's own motion.
+// Under the solve's own motion, and no other, the fields of a solve satisfy Coulomb's law.
 TEST_P(GivenFieldsOf, ASolveAreThatSolve) {
   const solver::Scene scene = scene_with(GetParam());
   const solver::Solution solved = solver::solve(scene);
