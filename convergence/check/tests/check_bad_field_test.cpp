@@ -34,8 +34,8 @@ class CheckCoarseBadField : public testing::TestWithParam<Coarse> {
 
 TEST_P(CheckCoarseBadField, MomentOnePercentOff) {
   for (const double factor : {0.99, 1.01}) {
-    const Json result = find_bad(solved(scene_of(GetParam().scene, GetParam().cells, load(factor))), scene_,
-                                 BreaksFirst("moment_error"));
+    const Checked result = find_bad(solved(scene_of(GetParam().scene, GetParam().cells, load(factor))),
+                                    scene_, BreaksFirst("moment_error"));
     EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
   }
 }
@@ -82,7 +82,7 @@ TEST_F(CheckBadField, AnotherFrictionCoefficient) {
   find_bad(with_tractions_times(rows_, 0.95), scene_,
            AllOf(IsOff("moment_error", -0.05), names(mistake::friction_coefficient, 0.095)));
   for (const double factor : {1.05, 1.2}) {  // the second beyond what friction can carry
-    const Json result =
+    const Checked result =
         find_bad(with_tractions_times(rows_, factor), scene_,
                  AllOf(Breaks("friction_bound"), names(mistake::friction_coefficient, 0.1 * factor)));
     // Displacements and the twist that fits them grow with the tractions.
@@ -98,7 +98,7 @@ TEST(CheckBadCell, IsHalved) {
     const auto largest =
         std::ranges::max_element(rows, {}, [](const FieldRow& r) { return std::hypot(r[3], r[4]); });
     for (const std::size_t c : {3, 4}) (*largest)[c] *= 0.5;
-    const Json result = find_bad(rows, scene, BreaksFirst("traction_cell"));
+    const Checked result = find_bad(rows, scene, BreaksFirst("traction_cell"));
     EXPECT_THAT(why(result), AllOf(HasSubstr(fmt::format("{:.3g}", (*largest)[0])),
                                    HasSubstr(fmt::format("{:.3g}", (*largest)[1]))));
   }
@@ -165,8 +165,8 @@ FieldRows sliding_rows(int cells, double radius) {
 TEST(CheckSlidingField, IsJudgedByItsRadiusAndItsMoment) {
   for (const int cells : {32, 48}) {
     for (const double radius : {0.79, 0.97, 1.0}) {
-      const Json result =
-          find_bad(sliding_rows(cells, radius), scene_of("paper", cells), BreaksFirst("moment_error"));
+      const Checked result =
+          find_bad(sliding_rows(cells, radius), scene_of("paper", cells), Breaks("moment_error"));
       EXPECT_NEAR(result["moment_error"], radius / 0.9 - 1.0, 5e-3);
       EXPECT_EQ(judgement(result, "pressure")["holds"], radius == 1.0);
     }

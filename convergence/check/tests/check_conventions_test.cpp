@@ -16,11 +16,11 @@ class CheckConventions : public testing::Test {
  protected:
   solver::Scene scene_ = scene_of("ellipse", 32);
   FieldRows rows_ = rows_of(solver::solve(scene_));
-  Json base_ = check_rows(rows_, scene_);
+  Checked base_ = check_rows(rows_, scene_);
 
   /// The same verdict and numbers as the field in this project's own conventions.
   void expect_same(const FieldRows& rows, const std::vector<std::string>& notes) const {
-    const Json result = find_good(rows, scene_);
+    const Checked result = find_good(rows, scene_);
     for (const char* key : {"twist_angle", "moment", "normal_load", "stick_radius", "contact_radius"}) {
       EXPECT_NEAR(result[key].get<double>() / base_[key].get<double>(), 1.0, 1e-8) << key;
     }
@@ -42,7 +42,7 @@ TEST_F(CheckConventions, SignsAndComponents) {
 // No frame and no body explains one reversed component.
 TEST_F(CheckConventions, NoComponentIsReversedAlone) {
   for (const std::size_t component : {3, 4}) {
-    const Json result =
+    const Checked result =
         find_bad(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_, testing::_);
     EXPECT_TRUE(result["within_mesh"].get<bool>()) << why(result);  // all the rest is right
     EXPECT_THAT(result["conventions"], IsEmpty());
@@ -57,7 +57,7 @@ TEST_F(CheckConventions, StandInTheFirstLineAndStrictTakesNone) {
   const std::string& text = taken.text;
   EXPECT_THAT(text.substr(0, text.find('\n')),
               AllOf(HasSubstr("good"), HasSubstr("mm"), HasSubstr("reversed")));
-  const Json strict = checked(scene_, file, {.strict = true});
+  const Checked strict = checked(scene_, file, {.strict = true});
   EXPECT_EQ(strict["verdict"], "bad");
   EXPECT_THAT(why(strict), AllOf(HasSubstr("mm"), HasSubstr("reversed")));
   EXPECT_EQ(checked(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
@@ -137,7 +137,7 @@ TEST_F(CheckConventions, OriginAndPartsOfACell) {
 
 TEST_F(CheckConventions, FewDigits) {
   for (const int digits : {10, 6}) {
-    const Json result = checked(scene_, write_rows(rows_, digits));
+    const Checked result = checked(scene_, write_rows(rows_, digits));
     EXPECT_EQ(result["verdict"], "good") << digits << why(result);
     EXPECT_NEAR(result["stick_cells"], base_["stick_cells"].get<double>(), 2.0);
     EXPECT_LE(result["certificate"]["friction_bound"], 2e-5);
@@ -147,8 +147,8 @@ TEST_F(CheckConventions, FewDigits) {
 // Rounding is in the unit of the file.
 TEST_F(CheckConventions, FewDigitsInAnotherUnit) {
   const auto file = [](const FieldRows& rows) { return write_rows(rows, 3); };
-  const Json in_pa = checked(scene_, file(rows_));
-  const Json in_mpa = checked(scene_, file(with_stresses_times(rows_, 1e-6)));
+  const Checked in_pa = checked(scene_, file(rows_));
+  const Checked in_mpa = checked(scene_, file(with_stresses_times(rows_, 1e-6)));
   EXPECT_EQ(in_pa["verdict"], "good") << why(in_pa);
   EXPECT_EQ(in_mpa["verdict"], "good") << why(in_mpa);
   for (const char* key : {"gap", "allowed"}) {

@@ -25,7 +25,7 @@ TEST(CheckFrictionLaw, FindsRightFieldsGood) {
   for (const Settings& settings : {kTresca, kCapped, kPower}) {
     for (const double ratio : {0.3, 0.9}) {
       const solver::Scene scene = under(settings, 64, ratio);
-      const Json result = find_good(solved(scene), scene);
+      const Checked result = find_good(solved(scene), scene);
       EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
     }
   }

@@ -16,7 +16,7 @@ using namespace testing;
 
 TEST(Check, FindsContactsOwnFieldGood) {
   const double twist = 2.361048651456917e-3;
-  for (const Json& result : {check_peer("contact", twist), check_peer("contact")}) {
+  for (const Checked& result : {check_peer("contact", twist), check_peer("contact")}) {
     EXPECT_EQ(result["verdict"], "good") << why(result);
     EXPECT_THAT(result["conventions"], IsEmpty());
     EXPECT_NEAR(result["twist_angle"].get<double>() / twist, 1.0, 1e-6);
@@ -57,7 +57,7 @@ TEST(Check, FindsOwnSolutionsGood) {
                            "rounded_punch", "annulus", "patches", "dissimilar", "mindlin"}) {
     const solver::Scene scene = scene_of(name);
     const solver::Solution solution = solver::solve(scene);
-    const Json result = find_good(rows_of(solution), scene);
+    const Checked result = find_good(rows_of(solution), scene);
     EXPECT_THAT(result["conventions"], IsEmpty()) << name;
     EXPECT_LE(result["certificate"]["gap"], 1e-6) << name;
     EXPECT_LE(result["yardstick"]["distance"], 1e-3) << name;
@@ -79,8 +79,8 @@ TEST(Check, JudgesLayersOnTheFieldsOwnCells) {
   for (std::vector<std::string> settings : layers) {
     settings.emplace_back("load.moment_ratio=0.5");
     const FieldRows own = solved(scene_of("paper", 32, settings));
-    const Json same_cells = find_good(own, scene_of("paper", 32, settings));
-    const Json other_cells = find_good(own, scene_of("paper", 48, settings));
+    const Checked same_cells = find_good(own, scene_of("paper", 32, settings));
+    const Checked other_cells = find_good(own, scene_of("paper", 48, settings));
     EXPECT_TRUE(other_cells["discrete"]["holds"].get<bool>());
     EXPECT_NEAR(other_cells["twist_angle"].get<double>() / same_cells["twist_angle"].get<double>(), 1.0,
                 1e-9);
@@ -104,7 +104,7 @@ TEST(Check, FindsALayerOfTwiceTheThicknessBadOnAnyCells) {
 }
 
 TEST(Check, FindsTheTwistOfACoatedSphere) {
-  const Json result = find_good(solved(scene_of("coated_sphere", 64)), scene_of("coated_sphere", 128));
+  const Checked result = find_good(solved(scene_of("coated_sphere", 64)), scene_of("coated_sphere", 128));
   EXPECT_LE(std::abs(result["twist_error"].get<double>()), 1e-2);
 }
 
@@ -123,7 +123,7 @@ TEST(Check, JudgesTheNormalContactOfAnEllipseExactly) {
     EXPECT_THAT(good.text, HasSubstr("normal contact only")) << name;
     solver::Scene softer = scene;
     softer.upper.young_modulus = softer.lower.young_modulus *= 0.5;  // the contact is by 2^(1/3) larger
-    const Json bad = find_bad(solved(softer), scene, IsOff("contact_radius_error", 0.26));
+    const Checked bad = find_bad(solved(softer), scene, IsOff("contact_radius_error", 0.26));
     EXPECT_NEAR(bad["contact_radius_error"], std::cbrt(2.0) - 1.0, 1e-2) << name;
   }
 }
@@ -137,7 +137,7 @@ TEST(Check, FindsReversedComponentsOnAnEllipseUnderAnImposedTwist) {
       q2 = -q2;  // which carries most of the moment
       if (both) q1 = -q1;
     }
-    const Json result = check_rows(rows, scene);
+    const Checked result = check_rows(rows, scene);
     EXPECT_EQ(result["verdict"], both ? "good" : "bad") << why(result);
     ASSERT_EQ(result[both ? "conventions" : "mistakes"].size(), 1);
     EXPECT_THAT(result[both ? "conventions" : "mistakes"][0].get<std::string>(),
@@ -170,7 +170,7 @@ TEST(Check, FindsOwnSolutionsGoodUnderAnyLoad) {
     SCOPED_TRACE(fmt::format("{} {}", name, fmt::join(load, " ")));
     const solver::Scene scene = scene_of(name, 32, load);
     const solver::Solution solution = solver::solve(scene);
-    const Json result = find_good(rows_of(solution), scene);
+    const Checked result = find_good(rows_of(solution), scene);
     const double moved = std::hypot(solution.displacement[0], solution.displacement[1]);
     for (const std::size_t component : {0U, 1U}) {
       EXPECT_NEAR(result["displacement"][component], solution.displacement[component], 1e-4 * moved + 1e-12);
@@ -189,7 +189,7 @@ TEST(Check, HasTheErrorsOfSolve) {
     const solver::Solution solution = solver::solve(scene);
     const Errors errors = compare(solution, *find_oracle(scene).oracle);
     const bool centred = std::string(name) == "paper";
-    const Json result = find_good(rows_of(solution), scene, solution.twist_angle);
+    const Checked result = find_good(rows_of(solution), scene, solution.twist_angle);
     EXPECT_NEAR(result["traction_error"]["l1"], errors.traction.at_centres.l1, centred ? 1e-9 : 1e-6);
     EXPECT_NEAR(result["pressure_error"]["l1"], errors.pressure.l1, centred ? 1e-9 : 1e-6);
     if (!centred) continue;
@@ -208,7 +208,7 @@ TEST(Check, MeasuresTheMeshWhateverEmptyCellsTheFileHas) {
   const solver::Scene scene = scene_of("paper", 24, {"load.twist=2e-3", "load.displacement=[0,0]"});
   const FieldRows rows = solved(scene);
   const double cell = rows[1][1] - rows[0][1];
-  const Json right = check_rows(rows, scene);
+  const Checked right = check_rows(rows, scene);
   for (const auto& [n1, n2] : {std::pair{7.0, 0.0}, {-7.0, 0.0}, {0.0, 7.0}, {0.0, -7.0}}) {
     FieldRows more = rows;
     for (FieldRow row : rows) more.push_back({row[0] + n1 * cell, row[1] + n2 * cell, 0.0, 0.0, 0.0});
@@ -217,7 +217,7 @@ TEST(Check, MeasuresTheMeshWhateverEmptyCellsTheFileHas) {
       return std::hypot(a[0] - b[0], a[1] - b[1]) < 1e-9;
     };
     more.erase(std::unique(more.begin(), more.end(), same), more.end());
-    const Json result = find_good(more, scene);
+    const Checked result = find_good(more, scene);
     for (const char* key : {"mesh_error", "gap", "slip_direction"}) {
       EXPECT_NEAR(result["yardstick"][key].get<double>() / right["yardstick"][key].get<double>(), 1.0, 1e-3)
           << key << ' ' << n1 << ' ' << n2;
@@ -242,7 +242,7 @@ TEST(Check, AccountsForTheMeshByWhatItLeavesOpen) {
 // digits; 4 times the mesh's gap is more than the rest.
 TEST(Check, AccountsForTheDigitsOfTheFile) {
   const solver::Scene fine = scene_of("paper", 64);
-  const Json result = find_good(with_digits(solved(fine), {2, 3, 4}, 2), fine);
+  const Checked result = find_good(with_digits(solved(fine), {2, 3, 4}, 2), fine);
   const Json gap = judgement(result, "gap");
   const double of_digits = gap["allowed"].get<double>() - 4.0 * result["yardstick"]["gap"].get<double>();
   EXPECT_LE(std::abs(gap["value"].get<double>()), of_digits);
@@ -279,7 +279,7 @@ TEST(Check, AsksTwoQuestions) {
   const solver::Scene scene = scene_of("paper", 48);
   for (const bool exact : {false, true}) {
     const auto file = write_rows(exact ? sampled(scene) : solved(scene));
-    const Json result = checked(scene, file);
+    const Checked result = checked(scene, file);
     EXPECT_EQ(result["verdict"], "good") << why(result);
     EXPECT_EQ(result["discrete"]["holds"], !exact);
     EXPECT_EQ(checked(scene, file, {.discrete = true})["verdict"], exact ? "bad" : "good");
@@ -297,7 +297,7 @@ TEST(Check, FindsNoisyFieldsGood) {
       std::normal_distribution<double> factor(1.0, noise);
       const FieldRows noisy = changed(
           rows, [&](FieldRow& r) { r[2] *= factor(random), r[3] *= factor(random), r[4] *= factor(random); });
-      const Json result = find_good(noisy, scene);
+      const Checked result = find_good(noisy, scene);
       EXPECT_FALSE(result["discrete"]["holds"].get<bool>());
     }
   }
@@ -326,7 +326,7 @@ TEST(Check, TakesATwistAgainstTheMoment) {
                          {"grid.cells=[64,40]", "load.force=[30,10]", "load.moment_ratio=-0.05"});
   const solver::Solution solution = solver::solve(scene);
   ASSERT_GT(solution.twist_angle, 0.0);
-  const Json result = find_good(rows_of(solution), scene, solution.twist_angle);
+  const Checked result = find_good(rows_of(solution), scene, solution.twist_angle);
   EXPECT_THAT(result["conventions"], IsEmpty());
   const solver::Scene force = scene_of("paper", 32, {"load.moment_ratio=0", "load.force=[30,10]"});
   for (const double rounding : {1e-19, -1e-19, 0.0}) {
@@ -358,7 +358,7 @@ TEST(Check, FindsTheFieldOfAnotherContactBad) {
       EXPECT_THAT(result, Breaks("pressure"));
     }
   }
-  const Json given = checked(sphere, write_rows(others.front().first), {.pressure_given = true});
+  const Checked given = checked(sphere, write_rows(others.front().first), {.pressure_given = true});
   EXPECT_EQ(given["verdict"], "good") << why(given);
   EXPECT_TRUE(given["pressure_given"]);
 }

@@ -130,7 +130,7 @@ void turn(FieldRow& row, double degrees) {
 
 // A chessboard of turned tractions hardly moves the surface: slip stays where it was.
 TEST_F(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
-  const Json right = check_rows(field.rows, field.scene);
+  const Checked right = check_rows(field.rows, field.scene);
   const double mesh = right["yardstick"]["slip_direction"];
   EXPECT_NEAR(allowed(right, "slip_direction"), 0.1 + 2.0 * mesh, 1e-6);
   for (const double times : {kBelow, kAbove}) {
@@ -146,7 +146,7 @@ TEST_F(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
 // Two digits leave each component open by a part of 0.05: in the mean over |q|, sqrt(pi/2) times that as an
 // angle, and twice. The rounding also counts as noise, of 0.003 at most.
 TEST_F(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
-  const Json result = find_good(with_digits(field.rows, {3, 4}, 2), field.scene);
+  const Checked result = find_good(with_digits(field.rows, {3, 4}, 2), field.scene);
   const double of_digits = 0.05 * std::sqrt(0.5 * std::numbers::pi) * 180.0 / std::numbers::pi;
   const double mesh = result["yardstick"]["slip_direction"];
   const double ratio = (allowed(result, "slip_direction") - 0.1 - 2.0 * mesh) / (2.0 * of_digits);
@@ -157,7 +157,7 @@ TEST_F(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
 // A chessboard in stick cells meets no bound: the tractions are as far from the right ones as the test makes
 // them.
 TEST_F(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
-  const Json right = check_rows(field.rows, field.scene);
+  const Checked right = check_rows(field.rows, field.scene);
   const double mesh = right["yardstick"]["mesh_error"];
   EXPECT_NEAR(allowed(right, "tractions"), 2.0 * mesh, 1e-9);
   double sum = 0.0;
@@ -166,12 +166,12 @@ TEST_F(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
   with_part(field, 0.0, 0.8, [&](FieldRow&) { ++sticking; });
   for (const double times : {kBelow, kAbove}) {
     const double part = times * 2.0 * mesh;
-    const Json result = check_rows(with_part(field, 0.0, 0.8,
-                                             [&](FieldRow& row) {
-                                               const double size = part * sum / sticking;
-                                               row[3] += is_white(row, field.solution.grid) ? size : -size;
-                                             }),
-                                   field.scene);
+    const Checked result = check_rows(with_part(field, 0.0, 0.8,
+                                                [&](FieldRow& row) {
+                                                  const double size = part * sum / sticking;
+                                                  row[3] += is_white(row, field.solution.grid) ? size : -size;
+                                                }),
+                                      field.scene);
     const Json item = judgement(result, "tractions");
     EXPECT_NEAR(item["value"].get<double>() / part, 1.0, 1e-2);
     EXPECT_EQ(result["yardstick"]["distance"], item["value"]);
@@ -187,7 +187,7 @@ TEST_F(CheckThreshold, OfTheGapIsTheIterationsAndTheMeshs) {
   };
   const auto gap = [](const std::string& pressure, int cells) {
     const solver::Scene scene = scene_of("paper", cells, {fmt::format("contact.pressure='{}'", pressure)});
-    const Json result = check_rows(solved(scene), scene);
+    const Checked result = check_rows(solved(scene), scene);
     EXPECT_EQ(result["yardstick"]["constant_cells"], pressure == "solved");
     EXPECT_NEAR(result["discrete"]["allowed"].get<double>(), 1e-5, 1e-8);
     return Gap{allowed(result, "gap"), result["yardstick"]["gap"]};
@@ -227,8 +227,8 @@ FieldRows averaged(FieldRows rows, const Oracle& oracle) {
 TEST_F(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
   const solver::Scene& scene = field.scene;
   const FieldRows at_centres = sampled(scene);
-  const Json one = check_rows(at_centres, scene);
-  const Json other = check_rows(averaged(at_centres, *find_oracle(scene).oracle), scene);
+  const Checked one = check_rows(at_centres, scene);
+  const Checked other = check_rows(averaged(at_centres, *find_oracle(scene).oracle), scene);
   const auto worse = [&](const char* quantity) {
     return std::max(judgement(one, quantity)["value"].get<double>(),
                     judgement(other, quantity)["value"].get<double>());
