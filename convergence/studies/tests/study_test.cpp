@@ -48,7 +48,7 @@ class StudyTest : public ScratchFolder {
 TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
   const BudgetRuns points = budget_runs({kPaper, {cells(32)}}, 1e-8);
   const std::vector<Json> results =
-      pool_.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]});
+      to_json(pool_.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]}));
   for (const Json& result : results) ASSERT_EQ(result["status"], "converged") << result.dump();
   const Budget budget = split_error("twist_error", results[0], results[1], {results[2], results[3]});
   EXPECT_GT(budget.rounding, 0.0);
@@ -64,14 +64,15 @@ TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
 TEST_F(StudyTest, APressureThatIsMirroredToRoundingIsSolved) {
   const BudgetRuns points =
       budget_runs({kPaper, {cells(96), "contact.pressure=\"hertz\"", "load.moment_ratio=0.5"}}, 1e-8);
-  const std::vector<Json> results = pool_.run({points.tightened, points.rounded[0], points.rounded[1]});
-  for (const Json& result : results) EXPECT_EQ(result["status"], "converged") << result.dump();
+  const std::vector<SolveRecord> results =
+      pool_.run({points.tightened, points.rounded[0], points.rounded[1]});
+  for (const SolveRecord& result : results) EXPECT_TRUE(result.is_converged()) << result.message;
 }
 
 /// A parent that ignores SIGCHLD gets its results.
 TEST_F(StudyTest, ResultsAreFoundWhereSigchldIsIgnored) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
-  EXPECT_EQ(pool_.run(RunSpec{kPaper, {cells(16)}})["status"], "converged");
+  EXPECT_TRUE(pool_.run(RunSpec{kPaper, {cells(16)}}).is_converged());
   std::signal(SIGCHLD, before);
 }
 
@@ -79,7 +80,7 @@ TEST_F(StudyTest, ResultsAreFoundWhereSigchldIsIgnored) {
 TEST_F(StudyTest, OtherChildrenAreNotReaped) {
   const pid_t other = fork();
   if (other == 0) _exit(3);
-  EXPECT_EQ(pool_.run(RunSpec{kPaper, {cells(16)}})["status"], "converged");
+  EXPECT_TRUE(pool_.run(RunSpec{kPaper, {cells(16)}}).is_converged());
   int status = 0;
   EXPECT_EQ(waitpid(other, &status, 0), other);
   EXPECT_EQ(WEXITSTATUS(status), 3);
