@@ -492,7 +492,7 @@ void list_exact(auto& fields, Is<SolveRecord> auto& record) {
   fields.missing({"certificate", "slip_direction"},
                  "nothing to certify: the exact solution meets Coulomb's law everywhere");
   list_errors(fields, errors);
-  fields.within("seconds", [&](auto& seconds) { seconds("total", work.seconds.total); });
+  fields.within("seconds", [&](auto& seconds) { seconds("total", record.end.work.seconds.total); });
   fields("peak_bytes", record.memory.peak_bytes);
   fields("provenance", record.provenance);
 }
