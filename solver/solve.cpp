@@ -15,11 +15,11 @@ namespace {
 
 void require_can_solve(const Scene& scene) {
   validate(scene);
-  if (scene.model == ModelChoice::exact) {
+  if (scene.solver.model == ModelChoice::exact) {
     throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
   }
-  if (!scene.program.empty()) {
-    throw InputError(scene.source.string(), "solver.program", scene.program.string(),
+  if (!scene.solver.program.empty()) {
+    throw InputError(scene.source.string(), "solver.program", scene.solver.program.string(),
                      "left out: another program answers where the slipstick program runs it");
   }
 }

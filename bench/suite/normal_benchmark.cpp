@@ -22,7 +22,7 @@ constexpr double kPressureErrorTimesCells = 0.8;
 
 Prepared solve(Index cells) {
   Scene scene = paper_scene(cells, 0.5);
-  scene.model = solver::ModelChoice::automatic;
+  scene.solver.model = solver::ModelChoice::automatic;
   const convergence::Oracle exact = convergence::require_oracle(scene);
   const auto model = std::make_shared<solver::Model>(solver::make_model(scene));
   const auto find = [scene, model] { return solver::find_pressure(scene, *model, scene.steps[0]); };

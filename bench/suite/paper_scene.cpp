@@ -9,13 +9,13 @@ using solver::Scene;
 
 Scene paper_scene(solver::Index cells, double moment_ratio) {
   Scene scene = solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / "paper.toml");
-  scene.cells = {cells, cells};
+  scene.grid.cells = {cells, cells};
   scene.steps[0].torsion = solver::MomentRatio{moment_ratio};
-  scene.method = solver::Method::coulomb;
-  scene.model = solver::ModelChoice::full;
-  scene.pressure = solver::PressureModel::solved;
-  scene.tolerance = 1e-8;
-  scene.threads = 1;
+  scene.solver.method = solver::Method::coulomb;
+  scene.solver.model = solver::ModelChoice::full;
+  scene.contact.pressure = solver::PressureModel::solved;
+  scene.solver.tolerance = 1e-8;
+  scene.solver.threads = 1;
   return scene;
 }
 

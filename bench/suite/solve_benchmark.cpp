@@ -27,13 +27,13 @@ struct Load {
 };
 
 Scene with_symmetry(Scene scene) {
-  scene.model = solver::ModelChoice::automatic;
+  scene.solver.model = solver::ModelChoice::automatic;
   return scene;
 }
 
 Scene with_method(Scene scene, Method method, double tolerance) {
-  scene.method = method;
-  scene.tolerance = tolerance;
+  scene.solver.method = method;
+  scene.solver.tolerance = tolerance;
   return scene;
 }
 
@@ -58,10 +58,10 @@ Prepared with_force(const Load& load) {
   constexpr double kAllowedLoadError = 1e-9;  // relative: rounding of sums over the contact
   Scene scene = load.scene();
   auto& step = scene.steps.front();
-  step.force = {0.3 * scene.friction.coefficient * *step.normal, 0.0};
+  step.force = {0.3 * scene.contact.friction.coefficient * *step.normal, 0.0};
   const solver::Solution solution = solver::solve(scene);
   const double load_error = std::max(solution.certificate.moment, solution.certificate.force);
-  const bool holds = solution.certificate.gap <= scene.tolerance && load_error <= kAllowedLoadError;
+  const bool holds = solution.certificate.gap <= scene.solver.tolerance && load_error <= kAllowedLoadError;
   return {.counters = {{"gap", solution.certificate.gap},
                        {"load_error", load_error},
                        {"limit_factor", solution.limit.factor},

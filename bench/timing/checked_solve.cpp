@@ -27,17 +27,18 @@ constexpr double kTwistErrorTimesCellsCubed = 400.0;
 constexpr double kTwistErrorOverTolerance = 8.0;
 
 double twist_bound(const Scene& scene, double cells) {
-  const double second = scene.pressure == PressureModel::hertz ? kTwistErrorOfCentresTimesCellsSquared
-                                                               : kTwistErrorTimesCellsSquared;
-  const double iteration = scene.method == solver::Method::paper ? std::sqrt(scene.tolerance)
-                                                                 : kTwistErrorOverTolerance * scene.tolerance;
+  const double second = scene.contact.pressure == PressureModel::hertz ? kTwistErrorOfCentresTimesCellsSquared
+                                                                       : kTwistErrorTimesCellsSquared;
+  const double iteration = scene.solver.method == solver::Method::paper
+                               ? std::sqrt(scene.solver.tolerance)
+                               : kTwistErrorOverTolerance * scene.solver.tolerance;
   return (second + kTwistErrorTimesCellsCubed / cells) / (cells * cells) + iteration;
 }
 
 std::string error_above_bound(const Scene& scene, double moment_ratio, const convergence::Errors& errors) {
-  const auto cells = static_cast<double>(std::min(scene.cells[0], scene.cells[1]));
+  const auto cells = static_cast<double>(std::min(scene.grid.cells[0], scene.grid.cells[1]));
   const double traction =
-      kTractionErrorTimesCells / (cells * std::abs(moment_ratio)) + std::sqrt(scene.tolerance);
+      kTractionErrorTimesCells / (cells * std::abs(moment_ratio)) + std::sqrt(scene.solver.tolerance);
   if (!(errors.traction.at_centres.l2 <= traction)) {
     return fmt::format("traction error {:.3g} above {:.3g}", errors.traction.at_centres.l2, traction);
   }
@@ -62,8 +63,8 @@ std::string invalid_reason(const Scene& scene, const solver::Solution& solution,
                            const convergence::Errors& errors) {
   if (solution.status != solver::Status::converged) return solution.message;
   const double gap = solution.certificate.gap;
-  if (scene.method != solver::Method::paper && !(gap <= scene.tolerance)) {
-    return fmt::format("certificate {:.3g} above the tolerance {:.3g}", gap, scene.tolerance);
+  if (scene.solver.method != solver::Method::paper && !(gap <= scene.solver.tolerance)) {
+    return fmt::format("certificate {:.3g} above the tolerance {:.3g}", gap, scene.solver.tolerance);
   }
   return error_above_bound(scene, solution.moment / solution.moment_limit, errors);
 }

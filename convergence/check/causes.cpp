@@ -139,7 +139,7 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
 /// none does, one with a fitted number (a layer's thickness, the moduli). Larger contacts than kQuickCells
 /// are not tried.
 std::vector<Cause> mistakes_in_pressure(const Examination& e, double allowed) {
-  const bool solved = e.reference.pressure && e.scene.pressure != solver::PressureModel::file;
+  const bool solved = e.reference.pressure && e.scene.contact.pressure != solver::PressureModel::file;
   if (!solved || static_cast<double>(e.contact.grid.cells()) > kQuickCells) return {};
   std::vector<Cause> causes;
   for (MistakenScene& mistaken : mistaken_scenes(e.scene)) {

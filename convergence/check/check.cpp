@@ -204,11 +204,11 @@ std::string traction_text(const Examination& e) {
 std::string certificate_text(const Examination& e) {
   return text_line("certificate",
                    fmt::format("moment off by {}, |q| above {} by {}", number_text(e.certificate.moment),
-                               solver::bound_text(e.scene.friction.kind),
+                               solver::bound_text(e.scene.contact.friction.kind),
                                number_text(e.certificate.friction_bound))) +
-         text_line("slip direction",
-                   fmt::format("{} degrees off in the mean, {} at most ({})", number_text(e.direction.mean),
-                               number_text(e.direction.max), right_direction_text(e.scene.friction.kind)));
+         text_line("slip direction", fmt::format("{} degrees off in the mean, {} at most ({})",
+                                                 number_text(e.direction.mean), number_text(e.direction.max),
+                                                 right_direction_text(e.scene.contact.friction.kind)));
 }
 
 }  // namespace
@@ -267,7 +267,8 @@ Json to_json(const FieldCheck& check) {
   const std::string headline = check.headline();
   const std::string details = check.details();
   Json json{{"name", e.scene.name}, {"field", check.file.string()}};
-  if (!e.scene.friction.is_coulomb()) json.update({{"friction_law", to_string(e.scene.friction.kind)}});
+  if (!e.scene.contact.friction.is_coulomb())
+    json.update({{"friction_law", to_string(e.scene.contact.friction.kind)}});
   Json own_grid{{"holds", discrete.holds()}};
   set_number(own_grid, "gap", discrete.value, "|q| exceeds its bound: there is no gap");
   set_number(own_grid, "allowed", discrete.allowed, kBroken);
@@ -303,7 +304,7 @@ Json to_json(const FieldCheck& check) {
                {"yardstick", reference_json(e)},
                {"judged", judged_json(check.verdict.judged)}});
   if (check.explanation.diagnosis) json.update({{"diagnosis", diagnosis_json(*check.explanation.diagnosis)}});
-  json.update({{"provenance", provenance(std::max(1, e.scene.threads))}});
+  json.update({{"provenance", provenance(std::max(1, e.scene.solver.threads))}});
   return json;
 }
 

@@ -154,7 +154,7 @@ void correct_axes(Interpretation& read, const solver::Scene& scene) {
 
 /// Whether the scene has one smooth body about an axis, whose pressure is computed.
 bool has_axis(const solver::Scene& scene) {
-  return scene.surfaces.size() == 1 && scene.pressure != solver::PressureModel::file &&
+  return scene.surfaces.size() == 1 && scene.contact.pressure != solver::PressureModel::file &&
          solver::find_height_map(scene.surfaces) == nullptr &&
          scene.surfaces.front().shape != solver::Shape::roughness;
 }
@@ -215,7 +215,7 @@ void correct_origin(Interpretation& read, const solver::Scene& scene, const solv
     off[k] = field.centre[k] + (field.pressure * x).sum() / total - scene.surfaces.front().at[k];
   }
   const double cells = std::max(std::abs(off[0]) / field.grid.h1, std::abs(off[1]) / field.grid.h2);
-  if (!(cells > (scene.coupling == solver::Coupling::full ? 1.0 : kInPlace))) return;
+  if (!(cells > (scene.contact.coupling == solver::Coupling::full ? 1.0 : kInPlace))) return;
   ForeignField moved = field;
   for (std::size_t k = 0; k < 2; ++k) moved.centre[k] -= off[k];
   const bool known = exact.oracle && std::isfinite(exact.oracle->contact_radius);
@@ -272,8 +272,8 @@ class LoadMismatch {
  public:
   LoadMismatch(const ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact)
       : load_(scene.steps.front()),
-        friction_(scene.friction.bound(field.pressure).sum()),
-        limit_(solver::free_moment_limit(field.grid, scene.friction.bound(field.pressure))),
+        friction_(scene.contact.friction.bound(field.pressure).sum()),
+        limit_(solver::free_moment_limit(field.grid, scene.contact.friction.bound(field.pressure))),
         moment_(known_moment(scene, exact, limit_, field.grid.cell_area())),
         rotation_(rotation_about_origin(field.grid, field.centre)) {
     const double area = field.grid.cell_area();

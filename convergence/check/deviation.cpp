@@ -110,8 +110,8 @@ std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver:
   grid.n1 = larger(grid.n1, grid.h1, half1 + std::abs(contact.centre[0]));
   grid.n2 = larger(grid.n2, grid.h2, half2 + std::abs(contact.centre[1]));
   if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxSolvedCells)) return std::nullopt;
-  const bool coupled = scene.coupling == solver::Coupling::full;
-  if (coupled || scene.pressure == solver::PressureModel::file ||
+  const bool coupled = scene.contact.coupling == solver::Coupling::full;
+  if (coupled || scene.contact.pressure == solver::PressureModel::file ||
       std::ranges::any_of(scene.surfaces, solver::is_measured)) {
     if (!moved(own, ArrayXd::Zero(own.cells()), grid, contact.centre)) return std::nullopt;
     return moved(own,

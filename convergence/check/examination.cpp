@@ -331,8 +331,8 @@ void require_judgeable(const solver::Scene& scene) {
                      fmt::format("{} steps", scene.steps.size() * static_cast<std::size_t>(scene.cycles)),
                      "a scene of one load: a field does not show the steps before");
   }
-  if (scene.friction.is_frictionless()) {
-    throw InputError(file, "contact.friction", fmt::format("{}", scene.friction.coefficient),
+  if (scene.contact.friction.is_frictionless()) {
+    throw InputError(file, "contact.friction", fmt::format("{}", scene.contact.friction.coefficient),
                      "larger than zero: without friction there is no traction to judge");
   }
 }
@@ -352,8 +352,8 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   load.torsion = solver::MomentRatio{kAnyRatio};
   load.force = {};
   load.displacement.reset();
-  scene.coupling = solver::Coupling::none;
-  scene.friction = 1.0;
+  scene.contact.coupling = solver::Coupling::none;
+  scene.contact.friction = 1.0;
   return find_oracle(scene);
 }
 

@@ -103,7 +103,7 @@ Allowed allowed_anyway(const Examination& e) {
       allowed_in_cells(c.grid, c.friction_bound.maxCoeff(), traction_deviation(e), y.mesh.tractions,
                        kLargestDraw * y.noise_size + kOtherDraws * (c.traction_rounding + c.bound_rounding));
   // A part of a cell may carry anything up to a bound that does not vanish at the edge.
-  if (e.scene.friction.kind == solver::FrictionKind::tresca)
+  if (e.scene.contact.friction.kind == solver::FrictionKind::tresca)
     allowed.traction_cells += c.friction_bound * (1.0 - y.regions.inner);
   if (y.pressure) {
     allowed.pressure_cells =
@@ -137,7 +137,7 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
     return kOtherDraws * (y.noise.*part + y.rounding.*part);
   };
   const auto cells = static_cast<double>((e.contact.pressure > 0.0).count());
-  const bool step = e.scene.friction.kind == solver::FrictionKind::tresca;
+  const bool step = e.scene.contact.friction.kind == solver::FrictionKind::tresca;
   const double quadrature = kQuadrature / cells;
   const double of_moment = step ? kEndsInStep * std::pow(cells, -0.75) : quadrature;
   const double sums = error_of_sums(e);
@@ -300,11 +300,11 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
 }
 
 void judge_friction(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
-  const solver::FrictionKind kind = e.scene.friction.kind;
+  const solver::FrictionKind kind = e.scene.contact.friction.kind;
   const std::string law = solver::law_text(kind);
-  judged.push_back(judge_error(
-      e.scene.friction.is_coulomb() ? "|q|/p in the slip ring" : "|q| over its bound in the slip ring",
-      "friction", e.deviation.friction, allowed.friction));
+  judged.push_back(judge_error(e.scene.contact.friction.is_coulomb() ? "|q|/p in the slip ring"
+                                                                     : "|q| over its bound in the slip ring",
+                               "friction", e.deviation.friction, allowed.friction));
   const double excess = friction_excess(e);
   judged.push_back({"friction_bound", excess, allowed.friction_bound, "",
                     fmt::format("|q| exceeds {} by {}{}", solver::bound_text(kind), percent(excess),

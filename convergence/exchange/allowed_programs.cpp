@@ -26,14 +26,14 @@ std::string program_override(const std::filesystem::path& file) {
 }
 
 void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed) {
-  if (scene.program.empty() || allowed.all) return;
+  if (scene.solver.program.empty() || allowed.all) return;
   for (const std::string& assignment : allowed.overrides) {
     if (assignment.starts_with(kKey) &&
-        scene.program == scene.source.parent_path() / unquoted(assignment.substr(kKey.size())))
+        scene.solver.program == scene.source.parent_path() / unquoted(assignment.substr(kKey.size())))
       return;
   }
   throw solver::InputError(
-      scene.source.string(), "solver.program", scene.program.string(),
+      scene.source.string(), "solver.program", scene.solver.program.string(),
       "one that the command line names, by --program or by --set solver.program=FILE; others run with "
       "--allow-programs only, since a program may do whatever you may do");
 }

@@ -91,16 +91,17 @@ Json load_json(const solver::Step& step) {
 /// How normal and tangential tractions are to be coupled.
 const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
   if (!posed.coupled) return "none";
-  return scene.coupling == solver::Coupling::full ? "full" : "pressure";
+  return scene.contact.coupling == solver::Coupling::full ? "full" : "pressure";
 }
 
 }  // namespace
 
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                     const PosedScene& posed) {
-  if (!scene.friction.is_coulomb()) {
+  if (!scene.contact.friction.is_coulomb()) {
     throw solver::InputError(
-        scene.source.string(), "contact.friction_law", fmt::format("\"{}\"", to_string(scene.friction.kind)),
+        scene.source.string(), "contact.friction_law",
+        fmt::format("\"{}\"", to_string(scene.contact.friction.kind)),
         "\"coulomb\" without a map, where another program solves: it receives only a coefficient");
   }
   const Grid& grid = posed.grid;
@@ -122,11 +123,11 @@ void write_exchange(const SolverProgram& program, const ExchangeFiles& files, co
             {"upper", body_json(scene.upper)},
             {"lower", body_json(scene.lower)},
             {"layer", nullptr},
-            {"friction", scene.friction.coefficient},
+            {"friction", scene.contact.friction.coefficient},
             {"coupling", coupling_word(scene, posed)},
             {"load", load_json(scene.steps.front())},
-            {"tolerance", scene.tolerance},
-            {"threads", std::max(1, scene.threads)},
+            {"tolerance", scene.solver.tolerance},
+            {"threads", std::max(1, scene.solver.threads)},
             {"gap", write_array(program, files, "gap", grid, posed.gap)},
             {"pressure", nullptr}};
   if (scene.layer.kind != nullptr) json["layer"] = scene.layer.kind->word;

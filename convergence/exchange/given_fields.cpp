@@ -30,7 +30,7 @@ NormalSolution describe_pressure(const Scene& scene, const Model& model, const A
   NormalSolution normal;
   normal.status = solver::Status::converged;
   normal.pressure = pressure;
-  if (scene.pressure != solver::PressureModel::solved) return normal;
+  if (scene.contact.pressure != solver::PressureModel::solved) return normal;
   const ArrayXd displacement = applied(scene, model, solver::normal_kernel(), pressure);
   const ArrayXd gap = (pressure > 0.0).select(displacement + model.gap, 0.0);
   const double total = pressure.sum();
@@ -62,16 +62,16 @@ TangentialSolution describe_tractions(const Scene& scene, const Model& model,
 
 void require_one_load(const Scene& scene) {
   const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
-  if (steps == 1 && scene.substeps == 1) return;
-  throw InputError(scene.source.string(), scene.substeps == 1 ? "step" : "solver.substeps",
-                   std::to_string(steps * static_cast<std::size_t>(scene.substeps)),
+  if (steps == 1 && scene.solver.substeps == 1) return;
+  throw InputError(scene.source.string(), scene.solver.substeps == 1 ? "step" : "solver.substeps",
+                   std::to_string(steps * static_cast<std::size_t>(scene.solver.substeps)),
                    "one load, with solver.program: a field does not show the steps before");
 }
 
 }  // namespace
 
 solver::Solution describe_given(Scene scene, const GivenFields& fields) {
-  scene.method = solver::Method::coulomb;  // others know less than a field may be
+  scene.solver.method = solver::Method::coulomb;  // others know less than a field may be
   solver::validate(scene);
   require_one_load(scene);
   const Model model = solver::make_model(scene);
@@ -101,7 +101,7 @@ solver::Solution describe_given(Scene scene, const GivenFields& fields) {
 }
 
 PosedScene pose(Scene scene, bool with_limit) {
-  scene.method = solver::Method::coulomb;
+  scene.solver.method = solver::Method::coulomb;
   solver::validate(scene);
   require_one_load(scene);
   const Model model = solver::make_model(scene);
@@ -115,7 +115,7 @@ PosedScene pose(Scene scene, bool with_limit) {
                    .mismatch = model.pressure_coupling ? pair.mismatch / model.stress_unit : 0.0,
                    .coupled = model.pressure_coupling && model.law->couples(),
                    .moment_limit = 0.0};
-  const bool given = scene.pressure != solver::PressureModel::solved;
+  const bool given = scene.contact.pressure != solver::PressureModel::solved;
   if (!given && !with_limit) return posed;
   const ArrayXd pressure = solver::find_pressure(scene, model, scene.steps.front()).pressure;
   if (given) posed.pressure = pressure * model.stress_unit;

@@ -38,14 +38,14 @@ Scene normal_contact_of(Scene scene) {
   step.torsion = solver::Moment{0.0};
   step.force = {};
   step.displacement.reset();
-  scene.coupling = solver::Coupling::none;
+  scene.contact.coupling = solver::Coupling::none;
   return scene;
 }
 
 }  // namespace
 
 ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowed) {
-  const SolverProgram program = read_solver_program(scene.program);
+  const SolverProgram program = read_solver_program(scene.solver.program);
   const auto ratio = solver::value_if<solver::MomentRatio>(scene.steps.front().torsion);
   const bool by_ratio = ratio.value_or(0.0) != 0.0;
   const PosedScene posed = pose(scene, by_ratio);

@@ -153,7 +153,7 @@ void judge_by_finer_meshes(std::vector<HardRow>& rows, const ProcessPool& pool) 
     judged.push_back(&row);
     for (const int finer : {2, 4}) {
       RunSpec& run = runs.emplace_back(changed(row.hard.run, grid_of(row.record, finer)));
-      run.overrides.push_back(fmt::format("solver.substeps={}", finer * row.scene->substeps));
+      run.overrides.push_back(fmt::format("solver.substeps={}", finer * row.scene->solver.substeps));
     }
   }
   const std::vector<SolveRecord> records = pool.run_or_refuse(runs);

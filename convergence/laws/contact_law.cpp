@@ -75,8 +75,8 @@ LawContact law_contact(const solver::Scene& scene) {
   return {.name = scene.name,
           .profile = answer.oracle->friction.bound,
           .units = LawUnits{
-              .friction = scene.friction.is_coulomb()
-                              ? scene.friction.coefficient
+              .friction = scene.contact.friction.is_coulomb()
+                              ? scene.contact.friction.coefficient
                               : answer.oracle->friction.force / *unloaded.steps.front().normal,
               .normal_load = *unloaded.steps.front().normal,
               .contact_radius = answer.oracle->contact_radius,

@@ -46,10 +46,10 @@ std::string coated_obstacle(const solver::Scene& scene) {
   if (!indenter(surface))
     return fmt::format("no exact solution is known here for shape = \"{}\" on a layer",
                        to_string(surface.shape));
-  if (!scene.friction.is_coulomb())
+  if (!scene.contact.friction.is_coulomb())
     return fmt::format("no exact solution is known here for friction_law = \"{}\" on a layer",
-                       to_string(scene.friction.kind));
-  if (scene.coupling != solver::Coupling::none && numbers(scene.upper) != numbers(scene.lower))
+                       to_string(scene.contact.friction.kind));
+  if (scene.contact.coupling != solver::Coupling::none && numbers(scene.upper) != numbers(scene.lower))
     return "the pressure's tangential displacement of coated bodies enters (contact.coupling)";
   const bool forces = std::any_of(scene.steps.begin(), scene.steps.end(), solver::brings_translation);
   return forces ? "no exact solution is known here for a force on a layer" : "";

@@ -69,7 +69,7 @@ class Indentation {
       : source_(scene.source.string()),
         surface_(scene.surfaces.front()),
         pair_(moduli(scene)),
-        friction_(scene.friction) {
+        friction_(scene.contact.friction) {
     if (is_coated(scene)) coated_ = scene;
   }
 
@@ -284,10 +284,10 @@ class ForceHistory final : public ExactHistory {
 class FrictionalIndentation final : public ExactHistory {
  public:
   explicit FrictionalIndentation(const solver::Scene& scene)
-      : indentation_(scene), full_(scene.coupling == solver::Coupling::full) {
+      : indentation_(scene), full_(scene.contact.coupling == solver::Coupling::full) {
     const double beta = 0.5 * indentation_.pair().effective * (mismatch(scene.lower) - mismatch(scene.upper));
-    stick_ratio_ = full_ ? analytic::spence_contact(scene.friction.coefficient, beta).stick_ratio
-                         : analytic::goodman_stick_radius(scene.friction.coefficient, beta).ratio;
+    stick_ratio_ = full_ ? analytic::spence_contact(scene.contact.friction.coefficient, beta).stick_ratio
+                         : analytic::goodman_stick_radius(scene.contact.friction.coefficient, beta).ratio;
   }
 
  private:
@@ -315,7 +315,9 @@ class FrictionalIndentation final : public ExactHistory {
 class PressedEllipse final : public ExactHistory {
  public:
   explicit PressedEllipse(const solver::Scene& scene)
-      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.friction.coefficient) {}
+      : surface_(scene.surfaces.front()),
+        pair_(moduli(scene)),
+        friction_(scene.contact.friction.coefficient) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {

@@ -26,7 +26,7 @@ std::string obstacle(const std::vector<solver::Surface>& surfaces) {
 
 /// Whether the pressure moves the two surfaces sideways by different amounts, and the scene includes that.
 bool is_coupled(const solver::Scene& scene) {
-  return scene.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
+  return scene.contact.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
 }
 
 /// Why no theory holds under a law of friction; empty if one may.
@@ -46,11 +46,11 @@ std::string obstacle(const solver::Scene& scene) {
   if (scene.layer.kind != nullptr) {
     return fmt::format("no exact solution is known here for layer.kind = \"{}\"", scene.layer.kind->word);
   }
-  if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (scene.contact.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
-  if (scene.friction.is_frictionless()) return "without friction there is no traction";
-  if (!scene.friction.map.empty()) return "the friction comes from a map (contact.friction_map)";
-  return obstacle(scene.friction, scene.surfaces.front());
+  if (scene.contact.friction.is_frictionless()) return "without friction there is no traction";
+  if (!scene.contact.friction.map.empty()) return "the friction comes from a map (contact.friction_map)";
+  return obstacle(scene.contact.friction, scene.surfaces.front());
 }
 
 bool without_torsion(const solver::Step& step) {
@@ -83,7 +83,7 @@ bool has_no_cross_contraction(const solver::Material& material) {
 }
 
 std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
-  if (!scene.friction.is_coulomb())
+  if (!scene.contact.friction.is_coulomb())
     return no_theory("Cattaneo's and Mindlin's solution belongs to Coulomb's law");
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
   const auto line = line_of_forces(scene.steps);
@@ -108,7 +108,7 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
       scene.cycles == 1 && std::is_sorted(steps.begin(), steps.end(),
                                           [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
-  if (!pressed_only || !growing || !shape || !shape->gap_exponent || !scene.friction.is_coulomb()) {
+  if (!pressed_only || !growing || !shape || !shape->gap_exponent || !scene.contact.friction.is_coulomb()) {
     return no_theory(
         "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
   }

@@ -12,7 +12,7 @@ using solver::Shape;
 enum class Edge { root, jump, singular, rough };
 
 Edge edge_of(const solver::Scene& scene) {
-  Edge edge = scene.friction.kind == solver::FrictionKind::tresca ? Edge::jump : Edge::root;
+  Edge edge = scene.contact.friction.kind == solver::FrictionKind::tresca ? Edge::jump : Edge::root;
   for (const solver::Surface& surface : scene.surfaces) {
     if (surface.shape == Shape::flat_punch && edge == Edge::root) edge = Edge::singular;
     if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) return Edge::rough;
@@ -68,11 +68,11 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
     return {1.0,
             "the singular edge stands where the outermost cells end, a part of a cell from the true one"};
   }
-  if (scene.pressure == PressureModel::hertz_averaged) {
+  if (scene.contact.pressure == PressureModel::hertz_averaged) {
     return {2.0,
             "averaging over cells keeps the load and widens the pressure by h^2/12 in its second moments"};
   }
-  if (scene.pressure == PressureModel::hertz) {
+  if (scene.contact.pressure == PressureModel::hertz) {
     return {
         2.0,
         "a pressure sampled at the centres misses loads by h^2, up or down as the edge lies between them"};

@@ -58,9 +58,10 @@ std::vector<Contender> contenders(const solver::Scene& scene, Index finest, cons
   for (const auto& [name, method] : solver::kMethods) {
     all.push_back({name,
                    {fmt::format("solver.method=\"{}\"", name), kNoProgram},
-                   method == scene.method ? finest : size.method_cells});
+                   method == scene.solver.method ? finest : size.method_cells});
   }
-  if (!scene.program.empty()) all.push_back({read_solver_program(scene.program).name, {}, finest});
+  if (!scene.solver.program.empty())
+    all.push_back({read_solver_program(scene.solver.program).name, {}, finest});
   return all;
 }
 
@@ -228,7 +229,7 @@ SceneCosts scene_costs(const PageRequest& request, const std::filesystem::path& 
   }
   solver::make_folder(folder);
   const std::vector<Json> results = solve_answer(base, scene, meshes, folder / "answer.h5", pool);
-  SceneCosts costs{.provenance = provenance(std::max(1, scene.threads)), .scene = scene.name};
+  SceneCosts costs{.provenance = provenance(std::max(1, scene.solver.threads)), .scene = scene.name};
   costs.numbers = number_rows(scene, results, scene_studies(base, scene, meshes, request.size, pool).front());
   const Reference reference = reference_of(results.back(), costs.numbers);
   costs.cost = error_against_time(base, scene, meshes.answer, reference, request.size, pool);

@@ -22,7 +22,7 @@ std::string shape_text(const solver::Surface& surface) {
     text += fmt::format(", {} {:g}{}{}", number.name, number.of(surface), number.unit.empty() ? "" : " ",
                         number.unit);
   }
-  if (surface.shape == solver::Shape::height_map) text += " " + surface.file.filename().string();
+  if (surface.shape == solver::Shape::height_map) text += " " + surface.map.file.filename().string();
   if (surface.at[0] != 0.0 || surface.at[1] != 0.0) {
     text += fmt::format(", at ({:g}, {:g}) m", surface.at[0], surface.at[1]);
   }
@@ -80,8 +80,8 @@ Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& gr
   add("Upper body", material_text(scene.upper));
   add("Lower body", material_text(scene.lower));
   if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
-  add_friction_rows(scene.friction, add);
-  add("Pressure", solver::word_of(solver::kPressureModels, scene.pressure));
+  add_friction_rows(scene.contact.friction, add);
+  add("Pressure", solver::word_of(solver::kPressureModels, scene.contact.pressure));
   if (scene.steps.size() == 1) {
     add("Loads", load_text(scene.steps.front()));
   } else {
@@ -91,14 +91,16 @@ Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& gr
     add("Last step", load_text(scene.steps.back()));
   }
   std::string cells = fmt::format("{} x {} cells", grid.n1, grid.n2);
-  if (scene.cells != on_page.cells) {
-    cells += fmt::format(" on this page; the scene file has {} x {}", scene.cells[0], scene.cells[1]);
+  if (scene.grid.cells != on_page.grid.cells) {
+    cells +=
+        fmt::format(" on this page; the scene file has {} x {}", scene.grid.cells[0], scene.grid.cells[1]);
   }
   add("Grid", cells);
-  const std::string solved_by =
-      scene.program.empty() ? solver::word_of(solver::kMethods, scene.method) : scene.program.string();
-  add(scene.program.empty() ? "Method" : "Program",
-      fmt::format("{}, to a tolerance of {:g}", solved_by, scene.tolerance));
+  const std::string solved_by = scene.solver.program.empty()
+                                    ? solver::word_of(solver::kMethods, scene.solver.method)
+                                    : scene.solver.program.string();
+  add(scene.solver.program.empty() ? "Method" : "Program",
+      fmt::format("{}, to a tolerance of {:g}", solved_by, scene.solver.tolerance));
   return rows;
 }
 

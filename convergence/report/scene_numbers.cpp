@@ -51,7 +51,7 @@ constexpr NumberName kNumbers[] = {{"twist_angle", "twist", "rad"},
                                    {"elastic_energy", "elastic energy", "J"},
                                    {"dissipated", "energy lost in the last step", "J"}};
 
-Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.cells[1]); }
+Index longer_side(const Scene& scene) { return std::max(scene.grid.cells[0], scene.grid.cells[1]); }
 
 /// Multiples of four that are these parts of the finest mesh, rising.
 std::vector<Index> meshes(Index finest, const auto& parts) {

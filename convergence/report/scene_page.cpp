@@ -155,7 +155,7 @@ struct PageScene {
 
 PageScene page_scene(const PageRequest& request) {
   Scene scene = solver::read_scene(request.base.scene, request.base.overrides);
-  const bool own = scene.program.empty();
+  const bool own = scene.solver.program.empty();
   const PageSize size = for_history(own ? request.size : for_program(request.size), scene);
   Meshes meshes = meshes_of(scene, size);
   return {request.base, std::move(scene), size, std::move(meshes), own};
@@ -183,7 +183,7 @@ Json hard_variants(const PageScene& at, const Json& answer, const std::vector<Be
   options.methods = programs;
   if (!at.own) {
     const std::string name = answer.at("program").value("name", "");
-    options.methods = {{name, program_override(at.scene.program), true}};
+    options.methods = {{name, program_override(at.scene.solver.program), true}};
   }
   const RunSpec base = at.own ? at.base : changed(at.base, {kNoProgram});
   return to_json(run_hard_cases(hard_cases(base, at.scene, at.meshes), options, pool));
@@ -252,7 +252,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   solver::make_folder(folder);
   const fs::path fields = folder / "answer.h5";
   const std::vector<Json> results = solve_answer(base, scene, meshes, fields, pool);
-  Page page{.provenance = provenance(std::max(1, scene.threads)),
+  Page page{.provenance = provenance(std::max(1, scene.solver.threads)),
             .scene = described(base, scene, meshes, size),
             .answer = results.back()};
   if (!own && has_tractions(page.answer))

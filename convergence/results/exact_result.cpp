@@ -33,7 +33,7 @@ std::string load_text(const solver::Step& step) {
 std::vector<solver::Omission> omissions(const solver::Scene& scene) {
   std::vector<solver::Omission> left_out = scene.left_out;
   left_out.push_back({"the grid", "the scene is axisymmetric: the exact solution answers"});
-  if (scene.coupling == solver::Coupling::none) {
+  if (scene.contact.coupling == solver::Coupling::none) {
     left_out.push_back({"K13, K23", "contact.coupling = \"none\""});
   }
   return left_out;
@@ -69,16 +69,18 @@ SolveRecord exact_record(const solver::Scene& scene, const Oracle& oracle, doubl
   SolveRecord record;
   record.status = RunStatus::converged;
   record.name = scene.name;
-  record.problem = {.method = "exact", .profile = oracle.normal.profile->name(), .left_out = omissions(scene)};
+  record.problem = {
+      .method = "exact", .profile = oracle.normal.profile->name(), .left_out = omissions(scene)};
   EndRecord& end = record.end;
   end.contact = {.contact_radius = known(oracle.contact_radius),
                  .stick_radius = known(oracle.stick_radius),
                  .stick_ratio = {oracle.state.stick_ratio},
                  .normal_load = {*scene.steps.back().normal},
-                 .peak_pressure = std::isinf(oracle.normal.peak_pressure) ? Number{.why_missing = "infinite"}
-                                                                   : known(oracle.normal.peak_pressure),
+                 .peak_pressure = std::isinf(oracle.normal.peak_pressure)
+                                      ? Number{.why_missing = "infinite"}
+                                      : known(oracle.normal.peak_pressure),
                  .approach = known(oracle.normal.approach)};
-  end.friction = make_friction(scene.friction, oracle.friction.force);
+  end.friction = make_friction(scene.contact.friction, oracle.friction.force);
   end.loads = {.twist_angle = {oracle.twist_angle},
                .moment = {oracle.moment},
                .moment_limit = known(oracle.friction.moment_limit),

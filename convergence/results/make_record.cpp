@@ -29,7 +29,7 @@ Components pair_or(const std::array<double, 2>& values, const std::string& why_m
 // ---------------------------------------------------------------- contact, loads, energies
 
 ContactRecord contact_of(const solver::Scene& scene, const Solution& solution) {
-  const bool solved = scene.pressure == solver::PressureModel::solved;
+  const bool solved = scene.contact.pressure == solver::PressureModel::solved;
   return {.contact_cells = solution.contact_cells,
           .stick_cells = solution.stick_cells,
           .contact_area = solution.contact_area,
@@ -191,20 +191,21 @@ ErrorsRecord errors_of(const Solution& solution, const OracleAnswer& exact) {
   const std::string& no_friction = oracle.only_normal.empty() ? reason : oracle.only_normal;
   const auto known = [&](double value) { return number_or(value, reason); };
   const auto of_friction = [&](double value) { return number_or(value, no_friction); };
-  ErrorsRecord record{.twist = of_friction(errors.twist),
-                      .moment = known(errors.moment),
-                      .moment_limit = known(errors.moment_limit),
-                      .displacement = of_friction(errors.displacement),
-                      .stick_radius = of_friction(errors.stick_radius),
-                      .stick_ratio = of_friction(errors.stick_ratio),
-                      .stick_radius_counted = of_friction(errors.stick_radius_counted),
-                      .contact_radius = known(errors.contact_radius),
-                      .peak_pressure = number_or(errors.peak_pressure,
-                                                 std::isfinite(oracle.normal.peak_pressure) ? reason : kNoPeak),
-                      .dissipated = of_friction(errors.dissipated),
-                      .traction = make_traction_error(errors.traction, no_friction),
-                      .pressure = make_field_error(errors.pressure, reason),
-                      .exact = exact_of(oracle)};
+  ErrorsRecord record{
+      .twist = of_friction(errors.twist),
+      .moment = known(errors.moment),
+      .moment_limit = known(errors.moment_limit),
+      .displacement = of_friction(errors.displacement),
+      .stick_radius = of_friction(errors.stick_radius),
+      .stick_ratio = of_friction(errors.stick_ratio),
+      .stick_radius_counted = of_friction(errors.stick_radius_counted),
+      .contact_radius = known(errors.contact_radius),
+      .peak_pressure =
+          number_or(errors.peak_pressure, std::isfinite(oracle.normal.peak_pressure) ? reason : kNoPeak),
+      .dissipated = of_friction(errors.dissipated),
+      .traction = make_traction_error(errors.traction, no_friction),
+      .pressure = make_field_error(errors.pressure, reason),
+      .exact = exact_of(oracle)};
   record.traction.sharpened = make_field_error(errors.sharpened, no_friction);
   record.traction.sharpened->kept = errors.kept;
   return record;
@@ -217,7 +218,8 @@ WorkRecord work_of(const solver::Scene& scene, const Solution& solution) {
   return {.iterations = solution.iterations,
           .operator_applications = solution.operator_applications,
           .pressure_applications = solution.pressure_applications,
-          .turns = scene.coupling == solver::Coupling::full ? std::optional(solution.turns) : std::nullopt,
+          .turns =
+              scene.contact.coupling == solver::Coupling::full ? std::optional(solution.turns) : std::nullopt,
           .seconds = {.setup = seconds.setup,
                       .pressure = seconds.pressure,
                       .traction = seconds.traction,
@@ -226,7 +228,7 @@ WorkRecord work_of(const solver::Scene& scene, const Solution& solution) {
 
 EndRecord end_of(const solver::Scene& scene, const Solution& solution, const OracleAnswer& exact) {
   EndRecord end{.contact = contact_of(scene, solution),
-                .friction = make_friction(scene.friction, solution.friction_force),
+                .friction = make_friction(scene.contact.friction, solution.friction_force),
                 .loads = loads_of(solution),
                 .energy = energy_of(solution),
                 .certificate = make_certificate(solution.certificate, kBroken),
@@ -252,16 +254,16 @@ std::vector<solver::RoughnessSpectrum> spectra_of(const std::vector<solver::Surf
 
 ProblemRecord problem_of(const solver::Scene& scene, const Solution& solution) {
   const solver::Grid& grid = solution.grid;
-  return {.method = to_string(scene.method),
-          .op = to_string(scene.op),
-          .cell_traction = to_string(scene.cell_traction),
-          .pressure = to_string(scene.pressure),
+  return {.method = to_string(scene.solver.method),
+          .op = to_string(scene.solver.op),
+          .cell_traction = to_string(scene.solver.cell_traction),
+          .pressure = to_string(scene.contact.pressure),
           .profile = {},
           .left_out = solution.left_out,
           .cells = {grid.n1, grid.n2},
           .cell_size = {grid.h1, grid.h2},
           .roughness = spectra_of(scene.surfaces),
-          .tolerance = scene.tolerance};
+          .tolerance = scene.solver.tolerance};
 }
 
 MethodRecord method_of(const Solution& solution) {

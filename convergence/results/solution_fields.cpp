@@ -87,7 +87,7 @@ GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, cons
                              "auto, full with --fields (the exact solution has the stick ratio only)");
   }
   solver::Scene sampled = scene;
-  sampled.op =
+  sampled.solver.op =
       solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
   const solver::Grid grid = solver::make_model(sampled, ranks).grid_in_m();
   const solver::Index cells = grid.cells();

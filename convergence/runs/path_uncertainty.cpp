@@ -56,7 +56,7 @@ bool changes_both(const Step& from, const Step& to) {
 
 /// Whether all shapes are of revolution, about one axis.
 bool has_axis(const Scene& scene) {
-  return scene.pressure != PressureModel::file &&
+  return scene.contact.pressure != PressureModel::file &&
          std::ranges::all_of(scene.surfaces, [&](const Surface& surface) {
            if (surface.at != scene.surfaces.front().at) return false;
            if (surface.shape == Shape::ellipsoid) return surface.radius_1 == surface.radius_2;
@@ -72,9 +72,9 @@ ArrayXXd block_means(const ArrayXXd& heights, Index side) {
 }
 
 void make_coarse(Scene& scene, double cells) {
-  const double mean = std::sqrt(static_cast<double>(scene.cells[0] * scene.cells[1]));
+  const double mean = std::sqrt(static_cast<double>(scene.grid.cells[0] * scene.grid.cells[1]));
   if (mean <= cells) return;
-  for (Index& side : scene.cells) {
+  for (Index& side : scene.grid.cells) {
     side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / mean));
   }
 }
@@ -88,34 +88,34 @@ double cells_across(const Scene& scene) {
 
 /// The scene on few cells, its map of friction left out; none where a file of pressures fixes the grid.
 std::optional<Scene> on_few_cells(const Scene& scene) {
-  if (scene.pressure == PressureModel::file) return std::nullopt;
+  if (scene.contact.pressure == PressureModel::file) return std::nullopt;
   Scene coarse = scene;
-  coarse.friction.map.clear();
-  coarse.tolerance = kPathTolerance;
-  coarse.op = OperatorKind::dcfft;
-  coarse.model = ModelChoice::automatic;
-  coarse.threads = 1;
+  coarse.contact.friction.map.clear();
+  coarse.solver.tolerance = kPathTolerance;
+  coarse.solver.op = OperatorKind::dcfft;
+  coarse.solver.model = ModelChoice::automatic;
+  coarse.solver.threads = 1;
   coarse.surfaces = with_heights(std::move(coarse.surfaces));
   const Surface* const map = find_height_map(coarse.surfaces);
   if (map == nullptr) {
     make_coarse(coarse, kPathCells);
-    if (!scene.extent) return coarse;
+    if (!scene.grid.extent) return coarse;
     const double across = cells_across(coarse);
     if (across < kPathAcross) {
-      coarse.cells = scene.cells;
+      coarse.grid.cells = scene.grid.cells;
       make_coarse(coarse, kPathCells * kPathAcross / std::max(across, 1.0));
     }
     return coarse;
   }
   const Index side =
-      std::max(map->heights.rows(), map->heights.cols()) / static_cast<Index>(4.0 * kPathCells);
+      std::max(map->map.heights.rows(), map->map.heights.cols()) / static_cast<Index>(4.0 * kPathCells);
   if (side < 2) return coarse;
   for (Surface& surface : coarse.surfaces) {
     if (surface.shape != Shape::height_map) continue;
-    surface.heights = block_means(surface.heights, side);
-    for (double& spacing : surface.spacing) spacing *= static_cast<double>(side);
+    surface.map.heights = block_means(surface.map.heights, side);
+    for (double& spacing : surface.map.spacing) spacing *= static_cast<double>(side);
   }
-  coarse.cells = {};
+  coarse.grid.cells = {};
   return coarse;
 }
 
@@ -130,8 +130,13 @@ std::optional<Scene> coarse_scene(const Scene& scene, const Solution& solution) 
     centre = {grid.x1(0) - 0.5 * grid.h1 - (few.x1(0) - 0.5 * few.h1),
               grid.x2(0) - 0.5 * grid.h2 - (few.x2(0) - 0.5 * few.h2)};
   }
+<<<<<<< HEAD:convergence/runs/path_uncertainty.cpp
   coarse->friction.factors = solution.friction.factors;
   coarse->friction = resampled(std::move(coarse->friction), grid, few, centre);
+=======
+  coarse->contact.friction.factors = model.friction.factors;
+  coarse->contact.friction = resampled(std::move(coarse->contact.friction), grid, few, centre);
+>>>>>>> 5706058e (Group the scene's members by the tables of its file):solver/load_path.cpp
   return coarse;
 }
 
@@ -159,8 +164,13 @@ void shorten(Scene& scene, std::size_t steps) {
 
 }  // namespace
 
+<<<<<<< HEAD:convergence/runs/path_uncertainty.cpp
 bool depends_on_path(const Scene& scene, bool coupled) {
   if (scene.method != Method::coulomb) return false;
+=======
+bool depends_on_path(const Scene& scene, const Model& model) {
+  if (scene.solver.method != Method::coulomb) return false;
+>>>>>>> 5706058e (Group the scene's members by the tables of its file):solver/load_path.cpp
   const bool one_pressure = std::ranges::all_of(
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
   const bool turned_only = std::ranges::none_of(scene.steps, brings_translation);
@@ -175,7 +185,7 @@ PathUncertainty::PathUncertainty(const Scene& scene, const Solution& solution)
   if (broke_off_) return;
   shorten(*coarse, kMaxPathSteps);
   const std::vector<StepEnd> ends = ends_of(*coarse);
-  coarse->substeps *= kFinerPath;
+  coarse->solver.substeps *= kFinerPath;
   const std::vector<StepEnd> finer = ends_of(*coarse);
   double safety = kPathSafety;
   for (std::size_t k = 0; k < std::min(ends.size(), finer.size()); ++k) {

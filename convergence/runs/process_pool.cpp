@@ -47,7 +47,7 @@ struct Task {
 Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
   Task task{&run, run.spec.scene.stem().string()};
   solver::Scene scene = run.scene;
-  scene.memory_limit = memory_limit;
+  scene.solver.memory_limit = memory_limit;
   try {
     const solver::Model model = solver::make_model(scene);
     task.label += fmt::format(" {} x {}", model.grid.n1, model.grid.n2);
@@ -111,7 +111,7 @@ constexpr double kMostShared = 128.0 * 0x1p20;  // bytes
 /// Whether a run needs a worker to itself. FFTW's plans depend on the rounding, so that no other run may use
 /// plans made under random rounding.
 bool needs_own_worker(const Task& task) {
-  return task.bytes > kMostShared || task.run->scene.rounding_seed != 0;
+  return task.bytes > kMostShared || task.run->scene.solver.rounding_seed != 0;
 }
 
 /// Works through tasks, the largest first.
@@ -277,7 +277,7 @@ std::vector<PreparedRun> ProcessPool::with_versions(const std::vector<PreparedRu
   std::vector<PreparedRun> all = runs;
   std::map<fs::path, std::string> versions;
   for (PreparedRun& run : all) {
-    const fs::path& file = run.scene.program;
+    const fs::path& file = run.scene.solver.program;
     if (file.empty()) continue;
     require_allowed(run.scene, options_.programs);
     if (!versions.contains(file)) versions[file] = version_of(read_solver_program(file), options_.program);

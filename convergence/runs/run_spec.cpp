@@ -61,13 +61,13 @@ PreparedRun prepare_run(const RunSpec& spec) {
 std::vector<std::filesystem::path> input_files(const solver::Scene& scene) {
   std::vector<std::filesystem::path> files{scene.source};
   for (const solver::Surface& surface : scene.surfaces) {
-    if (!surface.file.empty()) files.push_back(surface.file);
+    if (!surface.map.file.empty()) files.push_back(surface.map.file);
   }
-  for (const std::filesystem::path& file : {scene.pressure_file, scene.friction.map}) {
+  for (const std::filesystem::path& file : {scene.contact.pressure_file, scene.contact.friction.map}) {
     if (!file.empty()) files.push_back(file);
   }
-  if (scene.program.empty()) return files;
-  for (std::filesystem::path& file : program_files(read_solver_program(scene.program))) {
+  if (scene.solver.program.empty()) return files;
+  for (std::filesystem::path& file : program_files(read_solver_program(scene.solver.program))) {
     files.push_back(std::move(file));
   }
   return files;
@@ -78,13 +78,13 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 std::string cells_override(const solver::Scene& scene, solver::Index across) {
-  const solver::Index longer = std::max(scene.cells[0], scene.cells[1]);
-  return fmt::format("grid.cells=[{},{}]", across * scene.cells[0] / longer,
-                     across * scene.cells[1] / longer);
+  const solver::Index longer = std::max(scene.grid.cells[0], scene.grid.cells[1]);
+  return fmt::format("grid.cells=[{},{}]", across * scene.grid.cells[0] / longer,
+                     across * scene.grid.cells[1] / longer);
 }
 
 bool has_given_grid(const solver::Scene& scene) {
-  return scene.pressure == solver::PressureModel::file || !scene.friction.map.empty() ||
+  return scene.contact.pressure == solver::PressureModel::file || !scene.contact.friction.map.empty() ||
          solver::find_height_map(scene.surfaces) != nullptr;
 }
 

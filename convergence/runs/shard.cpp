@@ -67,12 +67,13 @@ std::vector<std::size_t> deal(const std::vector<double>& costs, std::size_t coun
 
 double predicted_cost(const PreparedRun& run) {
   solver::Scene scene = run.scene;
-  scene.memory_limit = kLargestModelled;
+  scene.solver.memory_limit = kLargestModelled;
   const double steps = static_cast<double>(scene.steps.size()) * scene.cycles;
   try {
     return steps * predicted_memory(scene, solver::make_model(scene)).solver;
   } catch (const solver::InputError&) {  // too large, or refused at once
-    return steps * kBytesOfCell * static_cast<double>(scene.cells[0]) * static_cast<double>(scene.cells[1]);
+    return steps * kBytesOfCell * static_cast<double>(scene.grid.cells[0]) *
+           static_cast<double>(scene.grid.cells[1]);
   }
 }
 

@@ -26,7 +26,7 @@ SolvedScene solve_elsewhere(const solver::Scene& scene, const AllowedPrograms& p
 }  // namespace
 
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
-  if (!scene.program.empty() && options.programs.all) return solve_elsewhere(scene, options.programs);
+  if (!scene.solver.program.empty() && options.programs.all) return solve_elsewhere(scene, options.programs);
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   std::vector<StepRecord> steps;

@@ -47,17 +47,17 @@ void turn(Scene& scene) {
     step.force = turned(step.force);
     if (step.displacement) step.displacement = turned(*step.displacement);
   }
-  std::swap(scene.cells[0], scene.cells[1]);
-  if (scene.extent) std::swap((*scene.extent)[0], (*scene.extent)[1]);
+  std::swap(scene.grid.cells[0], scene.grid.cells[1]);
+  if (scene.grid.extent) std::swap((*scene.grid.extent)[0], (*scene.grid.extent)[1]);
 }
 
 void shift(Scene& scene) {
-  if (!scene.extent) throw std::invalid_argument("a shifted scene needs its extent");
+  if (!scene.grid.extent) throw std::invalid_argument("a shifted scene needs its extent");
   std::array<double, 2> cell{};
   for (std::size_t i = 0; i < 2; ++i) {
-    cell[i] = (*scene.extent)[i] / static_cast<double>(scene.cells[i]);
-    scene.cells[i] += 2 * kWiderBy;
-    (*scene.extent)[i] = cell[i] * static_cast<double>(scene.cells[i]);
+    cell[i] = (*scene.grid.extent)[i] / static_cast<double>(scene.grid.cells[i]);
+    scene.grid.cells[i] += 2 * kWiderBy;
+    (*scene.grid.extent)[i] = cell[i] * static_cast<double>(scene.grid.cells[i]);
   }
   for (Surface& surface : scene.surfaces) {
     surface.at[0] += 2.0 * cell[0];
@@ -74,9 +74,9 @@ void measure_in_millimetres(Scene& scene) {
     body->coating->young_modulus *= of_stress;
     body->coating->thickness *= kMillimetres;
   }
-  scene.friction.shear_strength *= of_stress;
-  if (scene.friction.kind == solver::FrictionKind::power)
-    scene.friction.coefficient *= std::pow(of_stress, 1.0 - scene.friction.exponent);
+  scene.contact.friction.shear_strength *= of_stress;
+  if (scene.contact.friction.kind == solver::FrictionKind::power)
+    scene.contact.friction.coefficient *= std::pow(of_stress, 1.0 - scene.contact.friction.exponent);
   for (std::size_t i = 0; i < scene.layer.values.size(); ++i) {
     const solver::LawParameter& parameter = scene.layer.kind->parameters[i];
     scene.layer.values[i] *=
@@ -85,15 +85,15 @@ void measure_in_millimetres(Scene& scene) {
   for (Surface& s : scene.surfaces) {
     for (double* const length : solver::lengths(s)) *length *= kMillimetres;
     s.coefficient *= std::pow(kMillimetres, 1.0 - s.exponent);
-    s.heights *= kMillimetres;
+    s.map.heights *= kMillimetres;
   }
   for (solver::Step& step : scene.steps) {
     if (auto* const moment = std::get_if<solver::Moment>(&step.torsion)) moment->value *= kMillimetres;
     if (!step.displacement) continue;
     for (double& along : *step.displacement) along *= kMillimetres;
   }
-  if (scene.extent) {
-    for (double& side : *scene.extent) side *= kMillimetres;
+  if (scene.grid.extent) {
+    for (double& side : *scene.grid.extent) side *= kMillimetres;
   }
 }
 
@@ -108,7 +108,7 @@ void exchange(Scene& scene) {
   }
 }
 
-void use_two_threads(Scene& scene) { scene.threads = 2; }
+void use_two_threads(Scene& scene) { scene.solver.threads = 2; }
 
 struct Transformation {
   Variant variant;
@@ -143,13 +143,13 @@ Variant variant_of(const std::string& word) {
 
 std::string why_not(const Scene& scene, Variant variant) {
   if (variant == Variant::none || variant == Variant::two_threads) return "";
-  if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (scene.contact.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (variant == Variant::exchanged) return "";
-  if (!scene.friction.map.empty() && variant != Variant::in_other_units)
+  if (!scene.contact.friction.map.empty() && variant != Variant::in_other_units)
     return "the friction is read on the grid's own axes";
   if (variant == Variant::shifted && std::ranges::any_of(scene.steps, solver::brings_translation))
     return "moments are about the origin";
-  if (variant == Variant::shifted && scene.pressure != solver::PressureModel::solved) {
+  if (variant == Variant::shifted && scene.contact.pressure != solver::PressureModel::solved) {
     return "the given pressure stands at the origin";
   }
   for (const Surface& surface : scene.surfaces) {

@@ -24,7 +24,7 @@ Variant variant_of(const std::string& word);
 std::string why_not(const solver::Scene& scene, Variant variant);
 
 /// The equivalent scene. Shifted: by two cells along x1 and minus one along x2, on a grid four cells wider on
-/// each side; it needs scene.extent. Twists of mirrored and exchanged scenes have the opposite sign.
+/// each side; it needs scene.grid.extent. Twists of mirrored and exchanged scenes have the opposite sign.
 solver::Scene transformed(solver::Scene scene, Variant variant);
 
 }  // namespace slipstick::convergence

@@ -70,7 +70,7 @@ SolveRecord solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCac
     before = std::exchange(latest, at);
   };
   try {
-    const bool exact = run.scene.model == solver::ModelChoice::exact;
+    const bool exact = run.scene.solver.model == solver::ModelChoice::exact;
     if (exact && spec.fields.empty() && !spec.profile)
       return exact_record(run.scene, require_oracle(run.scene), 0.0);
     solved = solve_scene(
@@ -115,8 +115,8 @@ ProgramEnd Worker::wait() {
 
 void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
                     const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache) {
-  run.scene.memory_limit = memory_limit;
-  if (run.scene.threads == 0) run.scene.threads = 1;  // the other processors solve other runs
+  run.scene.solver.memory_limit = memory_limit;
+  if (run.scene.solver.threads == 0) run.scene.solver.threads = 1;  // the other processors solve other runs
   cache.keep(run.name, run.cache_key, to_json(solve(run, shared)), run.spec.fields);
 }
 

@@ -40,8 +40,8 @@ constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 /// The key whose file says the grid; null where it is free.
 const char* grid_owner(const Scene& scene) {
   if (solver::find_height_map(scene.surfaces) != nullptr) return "upper.file";
-  if (!scene.friction.map.empty()) return "contact.friction_map";
-  return scene.pressure == solver::PressureModel::file ? "contact.pressure_file" : nullptr;
+  if (!scene.contact.friction.map.empty()) return "contact.friction_map";
+  return scene.contact.pressure == solver::PressureModel::file ? "contact.pressure_file" : nullptr;
 }
 
 bool brings_torsion(const solver::TorsionLoad& load) {
@@ -54,14 +54,15 @@ void require_contact_seen(const Scene& scene, double pressed, double cells_acros
   if (cells_across >= kMinContactCells) return;
   throw InputError(
       scene.source.string(), "grid.extent",
-      scene.extent ? fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]) : "(missing)",
+      scene.grid.extent ? fmt::format("[{}, {}]", (*scene.grid.extent)[0], (*scene.grid.extent)[1])
+                        : "(missing)",
       fmt::format(
           "at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
           "fills {} in all, too few to choose a mesh by",
-          cells_across / kWellAcross, scene.extent ? "or left out" : "given", kReferenceCells, pressed));
+          cells_across / kWellAcross, scene.grid.extent ? "or left out" : "given", kReferenceCells, pressed));
 }
 
-Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.cells[1]); }
+Index longer_side(const Scene& scene) { return std::max(scene.grid.cells[0], scene.grid.cells[1]); }
 
 std::string shortest(double value) { return fmt::format("{:g}", value); }
 
@@ -99,11 +100,11 @@ void require_reachable(const Scene& scene, const AccuracyTarget& target) {
                                  scene.source.string()));
   }
   if (const char* const owner = grid_owner(scene);
-      owner != nullptr && scene.model != solver::ModelChoice::exact) {
+      owner != nullptr && scene.solver.model != solver::ModelChoice::exact) {
     throw InputError(scene.source.string(),
                      fmt::format("the grid is that of {}: --accuracy cannot choose it", owner));
   }
-  if (scene.method == solver::Method::paper && scene.model != solver::ModelChoice::exact) {
+  if (scene.solver.method == solver::Method::paper && scene.solver.model != solver::ModelChoice::exact) {
     throw InputError(
         scene.source.string(), "solver.method", "\"paper\"",
         "coulomb, projected_gradient with --accuracy (the paper's stopping test bounds no error)");
@@ -122,7 +123,7 @@ bool answers_exactly(const Scene& scene, AccuracyOf of) {
 
 Scene with_cells(Scene scene, Index longer) {
   const Index own = longer_side(scene);
-  for (Index& cells : scene.cells) {
+  for (Index& cells : scene.grid.cells) {
     cells = std::max<Index>(
         2, 2 * std::lround(0.5 * static_cast<double>(longer * cells) / static_cast<double>(own)));
   }
@@ -138,7 +139,7 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
             .cells_across = 2.0 * std::sqrt(static_cast<double>(grid.cells()) / M_PI)};
   }
   Scene coarse = with_cells(scene, kReferenceCells);
-  coarse.op = solver::OperatorKind::dcfft;
+  coarse.solver.op = solver::OperatorKind::dcfft;
   const solver::Model model = solver::make_model(coarse);
   const solver::Step& step = coarse.steps.back();
   const solver::NormalSolution normal = solver::find_pressure(coarse, model, step);
@@ -147,7 +148,7 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
   const double across = 2.0 * std::sqrt(pressed / M_PI);
   require_contact_seen(scene, pressed, across);
   return {.longer = static_cast<double>(kReferenceCells),
-          .margin = scene.extent ? 0.0 : kFreeCells,
+          .margin = scene.grid.extent ? 0.0 : kFreeCells,
           .cells_across = across};
 }
 
@@ -197,17 +198,17 @@ std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& c
 }
 
 double predicted_seconds(const Scene& scene, const ContactOnGrid& contact) {
-  if (scene.method != solver::Method::coulomb || scene.op != solver::OperatorKind::dcfft) {
+  if (scene.solver.method != solver::Method::coulomb || scene.solver.op != solver::OperatorKind::dcfft) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   const double across = cells_across(contact, longer_side(scene));
   const auto steps = static_cast<double>(scene.steps.size()) * scene.cycles;
-  return steps * work_of(accuracy_data(), across, scene.tolerance) * application_seconds(scene);
+  return steps * work_of(accuracy_data(), across, scene.solver.tolerance) * application_seconds(scene);
 }
 
 Json plan_json(const Scene& scene, int ranks) {
   Json plan;
-  if (scene.model == solver::ModelChoice::exact) {
+  if (scene.solver.model == solver::ModelChoice::exact) {
     require_oracle(scene);
     set_missing(plan, "cells", "the exact solution needs no grid");
     plan.update({{"unknowns", 0}, {"bytes", 0}, {"least_bytes", 0}});
@@ -222,7 +223,7 @@ Json plan_json(const Scene& scene, int ranks) {
   const solver::Reduction& part = model.pressure_part;
   const double mirrored = (part.quadrant() ? 4.0 : 1.0) * (part.diagonal() ? 2.0 : 1.0);
   plan["cells"] = {n1, n2};
-  plan["tolerance"] = scene.tolerance;
+  plan["tolerance"] = scene.solver.tolerance;
   plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
   plan["bytes"] = solver::predicted_memory(scene, model).total();
   plan["least_bytes"] = solver::predicted_memory(scene, model, {.pressure = 0.0, .tractions = 0.0}).total();

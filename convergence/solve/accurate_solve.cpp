@@ -44,8 +44,8 @@ AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const 
 
 Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyChoice& choice) {
   Scene chosen = with_cells(scene, choice.cells);
-  chosen.tolerance = std::max(choice.tolerance / scene.substeps, kTightestTolerance);
-  if (approach.smooth) chosen.cell_traction = solver::CellTraction::smooth;
+  chosen.solver.tolerance = std::max(choice.tolerance / scene.solver.substeps, kTightestTolerance);
+  if (approach.smooth) chosen.solver.cell_traction = solver::CellTraction::smooth;
   return chosen;
 }
 
@@ -84,10 +84,10 @@ void put_uncertainty(EndRecord& end, double mesh, double path) {
 /// As many parts as leave as little as the target allows them, or the most, and what they leave, if that
 /// falls like one over their number.
 void make_more_parts(Scene& scene, AccuracyTarget& target) {
-  const double left = scene.substeps * target.path;
+  const double left = scene.solver.substeps * target.path;
   const double needed = std::ceil(left / (0.8 * kPathPart * target.error));
-  scene.substeps = needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
-  target.path = std::min(left / scene.substeps, kMaxPathPart * target.error);
+  scene.solver.substeps = needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+  target.path = std::min(left / scene.solver.substeps, kMaxPathPart * target.error);
 }
 
 /// The scene with as many parts of its steps as the target takes, and in the target what they leave, found on
@@ -96,9 +96,9 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
   const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
-  for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
-    coarse.substeps = scene.substeps;
-    if (trial > 0 && steps * static_cast<std::size_t>(scene.substeps) > kPathTrialParts) return scene;
+  for (int trial = 0; trial < kPathTrials && scene.solver.substeps < kMaxSubsteps; ++trial) {
+    coarse.solver.substeps = scene.solver.substeps;
+    if (trial > 0 && steps * static_cast<std::size_t>(scene.solver.substeps) > kPathTrialParts) return scene;
     double path = 0.0;
     try {
       path = path_of(solve_with_path(coarse));
@@ -169,7 +169,7 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
 }
 
 Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
-  Json json{{"cells", made.answer.record.problem.cells}, {"tolerance", scene.tolerance}};
+  Json json{{"cells", made.answer.record.problem.cells}, {"tolerance", scene.solver.tolerance}};
   set_number(json, "error", made.reached.error, made.reached.why);
   json["seconds"] = seconds;
   if (!made.grids.is_null()) json["grids"] = made.grids;
@@ -190,7 +190,7 @@ std::string note_on(const Scene& scene) {
 }
 
 Json accuracy_plan(const Scene& given, AccuracyTarget target) {
-  if (given.model == solver::ModelChoice::exact) return plan_json(given);
+  if (given.solver.model == solver::ModelChoice::exact) return plan_json(given);
   const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   Json plan = plan_json(chosen_scene(scene, approach, first_choice(scene, approach, target)));
@@ -223,9 +223,9 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     }
     target.path = std::isnan(made.path) ? 0.0 : made.path;
     if (made.path > kPathPart * target.error) {
-      if (!(made.path < target.error) && (scene.substeps >= kMaxSubsteps || std::isinf(made.path))) {
-        stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps,
-                              made.path);
+      if (!(made.path < target.error) && (scene.solver.substeps >= kMaxSubsteps || std::isinf(made.path))) {
+        stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps",
+                              scene.solver.substeps, made.path);
         break;
       }
       make_more_parts(scene, target);
@@ -243,11 +243,11 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
              known ? made.reached.why : kPathNotKnown);
   set_number(found.accuracy, "path", made.path,
              known ? "more parts of the steps do not carry these loads" : kPathNotKnown);
-  found.accuracy["substeps"] = scene.substeps;
+  found.accuracy["substeps"] = scene.solver.substeps;
   found.accuracy.update(
       {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});
   if (approach.shifted) set_number(found.accuracy, "uncertainty", made.uncertainty, made.reached.why);
-  found.accuracy["replaced"] = {{"cells", scene.cells}, {"tolerance", scene.tolerance}};
+  found.accuracy["replaced"] = {{"cells", scene.grid.cells}, {"tolerance", scene.solver.tolerance}};
   if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
   found.answer = std::move(made.answer);
   if (target.of == AccuracyOf::twist) put_uncertainty(found.answer.record.end, made.to_lower(), made.path);

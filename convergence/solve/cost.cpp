@@ -32,9 +32,9 @@ double round_seconds(solver::LinearOperator& op, const Eigen::ArrayXd& in, Eigen
 
 /// In the proportions of the scene's own.
 void set_reference_cells(solver::Scene& scene) {
-  const solver::Index longer = std::max(scene.cells[0], scene.cells[1]);
+  const solver::Index longer = std::max(scene.grid.cells[0], scene.grid.cells[1]);
   if (longer == 0) return;  // a height map's
-  for (solver::Index& cells : scene.cells) {
+  for (solver::Index& cells : scene.grid.cells) {
     cells = std::max<solver::Index>(1, cells * kReferenceCells / longer);
   }
 }

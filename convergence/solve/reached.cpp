@@ -34,8 +34,8 @@ double order_of(const AccuracyQuantity& quantity, const Scene& scene) {
 Scene half_as_fine(const Scene& scene, const solver::Grid& grid) {
   Scene coarse = scene;
   const solver::Grid half = solver::coarser(grid);
-  coarse.cells = {half.n1, half.n2};
-  coarse.extent = {grid.h1 * static_cast<double>(grid.n1), grid.h2 * static_cast<double>(grid.n2)};
+  coarse.grid.cells = {half.n1, half.n2};
+  coarse.grid.extent = {grid.h1 * static_cast<double>(grid.n1), grid.h2 * static_cast<double>(grid.n2)};
   return coarse;
 }
 

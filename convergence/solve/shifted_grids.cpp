@@ -109,7 +109,7 @@ ContactForm form_on(const Scene& scene, solver::Index cells) {
   try {
     Scene few = with_cells(scene, cells);
     const long steps = static_cast<long>(few.steps.size()) * few.cycles;
-    few.substeps = static_cast<int>(std::clamp<long>(kFormParts / steps, 1, few.substeps));
+    few.solver.substeps = static_cast<int>(std::clamp<long>(kFormParts / steps, 1, few.solver.substeps));
     const solver::Solution coarse = solver::solve(few);
     const double ratio = coarse.stick_radius / coarse.contact_radius;
     if (ratio >= 0.0 && ratio <= 1.0) form.stick_ratio = ratio;
@@ -137,8 +137,8 @@ std::vector<Scene> shifted(const Scene& scene, double stick_cells) {
   std::vector<Scene> scenes(kShiftedGrids, scene);
   for (int k = 0; k < kShiftedGrids; ++k) {
     const double scale = 1.0 + growth * k;
-    scenes[static_cast<std::size_t>(k)].extent = {scale * grid.h1 * static_cast<double>(grid.n1),
-                                                  scale * grid.h2 * static_cast<double>(grid.n2)};
+    scenes[static_cast<std::size_t>(k)].grid.extent = {scale * grid.h1 * static_cast<double>(grid.n1),
+                                                       scale * grid.h2 * static_cast<double>(grid.n2)};
   }
   return scenes;
 }
@@ -172,7 +172,7 @@ void put_mean(EndRecord& end, const AccuracyQuantity& quantity, double mean, dou
 
 bool gains_by_smooth_cells(const Scene& scene, AccuracyOf of) {
   constexpr double kOrderOfRootEdges = 2.0;
-  return of != AccuracyOf::traction && scene.pressure == solver::PressureModel::solved &&
+  return of != AccuracyOf::traction && scene.contact.pressure == solver::PressureModel::solved &&
          !scene.ends_at_grid_edge && expected_order("twist_angle", scene).value == kOrderOfRootEdges;
 }
 
@@ -201,7 +201,7 @@ AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, 
 ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity,
                                     const ContactForm& form, const ContactOnGrid& contact,
                                     const GridSolve& solve) {
-  const double radius = 0.5 * cells_across(contact, std::max(scene.cells[0], scene.cells[1]));
+  const double radius = 0.5 * cells_across(contact, std::max(scene.grid.cells[0], scene.grid.cells[1]));
   const std::vector<Scene> scenes = shifted(scene, form.stick_ratio * radius);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   ShiftedMean found{
@@ -220,7 +220,7 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
     const EndRecord& end = found.answer.record.end;
     values.push_back(is_moment(quantity) ? end.loads.moment : end.loads.twist_angle);
     errors.push_back(is_moment(quantity) ? end.errors.moment : end.errors.twist);
-    found.grids.push_back({{"extent", *grid->extent}, {"value", values.back()}});
+    found.grids.push_back({{"extent", *grid->grid.extent}, {"value", values.back()}});
   }
   const Moments moments = moments_of(values);
   found.error = moments_of(errors).mean;

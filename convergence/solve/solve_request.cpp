@@ -43,7 +43,7 @@ std::vector<std::string> overrides_of(const SolveRequest& request) {
 
 solver::Scene read_scene(const SolveRequest& request) {
   solver::Scene scene = solver::read_scene(request.scene, overrides_of(request));
-  scene.memory_limit = request.memory_limit;
+  scene.solver.memory_limit = request.memory_limit;
   return scene;
 }
 
@@ -99,9 +99,9 @@ std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, c
 SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, SolveSceneOptions options,
                      std::size_t& step) {
   if (request.checkpoint.empty()) return solve_scene(scene, options);
-  if (scene.rounding_seed != 0) {
+  if (scene.solver.rounding_seed != 0) {
     throw solver::InputError(scene.source.string(), "solver.rounding_seed",
-                             std::to_string(scene.rounding_seed),
+                             std::to_string(scene.solver.rounding_seed),
                              "left out beside --checkpoint: what is drawn after a break is drawn anew");
   }
   const Checkpoint checkpoint(request.checkpoint,
@@ -185,7 +185,7 @@ void require_not_set(const std::vector<std::string>& overrides) {
 solver::Scene model_chosen(solver::Scene scene, const SolveRequest& request, AccuracyOf of) {
   const bool said =
       !request.model.empty() || solver::SceneReader(request.scene, request.overrides).has("solver.model");
-  if (!said && answers_exactly(scene, of)) scene.model = solver::ModelChoice::exact;
+  if (!said && answers_exactly(scene, of)) scene.solver.model = solver::ModelChoice::exact;
   return scene;
 }
 
@@ -199,7 +199,7 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
     text << plan_text(result);
     return 0;
   }
-  if (scene.model == solver::ModelChoice::exact) {
+  if (scene.solver.model == solver::ModelChoice::exact) {
     const Json accuracy = exact_accuracy(scene, target);
     answer_exactly(scene, request, text, result);
     result["accuracy"] = accuracy;
@@ -225,8 +225,8 @@ void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRe
     std::vector<std::string> overrides = overrides_of(request);
     overrides.insert(overrides.end(), changed.begin(), changed.end());
     solver::Scene scene = solver::read_scene(request.scene, overrides);
-    scene.memory_limit = request.memory_limit;
-    if (scene.model == solver::ModelChoice::exact) {
+    scene.solver.memory_limit = request.memory_limit;
+    if (scene.solver.model == solver::ModelChoice::exact) {
       return to_json(exact_record(scene, require_oracle(scene), 0));
     }
     return to_json(
@@ -252,10 +252,10 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
   if (request.accuracy) {
     throw solver::InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
   }
-  if (scene.rounding_seed != 0) {
+  if (scene.solver.rounding_seed != 0) {
     throw solver::InputError("solver.rounding_seed", "not on several ranks; allowed: 0");
   }
-  if (scene.op != solver::OperatorKind::dcfft) {
+  if (scene.solver.op != solver::OperatorKind::dcfft) {
     throw solver::InputError("solver.operator", "not on several ranks; allowed there: \"dcfft\"");
   }
 }
@@ -263,12 +263,12 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
 /// Throws InputError where the scene's program may not run, and for what no other program can be asked.
 void require_for_programs(const SolveRequest& request, const solver::Scene& scene) {
   require_allowed(scene, {request.allow_programs, request.overrides});
-  const char* const what = request.accuracy                            ? "--accuracy"
-                           : request.plan                              ? "--plan"
-                           : !request.checkpoint.empty()               ? "--checkpoint"
-                           : request.processes.several()               ? "several ranks"
-                           : scene.model != solver::ModelChoice::exact ? nullptr
-                                                                       : "solver.model = \"exact\"";
+  const char* const what = request.accuracy                                   ? "--accuracy"
+                           : request.plan                                     ? "--plan"
+                           : !request.checkpoint.empty()                      ? "--checkpoint"
+                           : request.processes.several()                      ? "several ranks"
+                           : scene.solver.model != solver::ModelChoice::exact ? nullptr
+                                                                              : "solver.model = \"exact\"";
   if (what == nullptr) return;
   throw solver::InputError(what, "not beside solver.program; allowed: without it");
 }
@@ -285,7 +285,7 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
                              "takes {step})");
   }
   const solver::Scene scene = read_scene(request);
-  if (!scene.program.empty()) require_for_programs(request, scene);
+  if (!scene.solver.program.empty()) require_for_programs(request, scene);
   if (request.processes.several()) require_shared_by_ranks(request, scene);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);
@@ -298,7 +298,7 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   }
   const std::vector<UncertainInput> uncertain =
       uncertain_inputs(request.scene, request.overrides, request.uncertain);
-  const bool exact = scene.model == solver::ModelChoice::exact;
+  const bool exact = scene.solver.model == solver::ModelChoice::exact;
   const int code = (exact ? answer_exactly : solve_on_grid)(scene, request, text, result);
   if (!uncertain.empty() && code == 0) add_uncertainty(uncertain, request, text, result);
   return code;

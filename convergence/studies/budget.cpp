@@ -38,7 +38,7 @@ Budget split_error(const std::string& quantity, const Json& observed, const Json
 }
 
 Budget error_budget(const PreparedRun& run, const std::string& quantity, const ProcessPool& pool) {
-  const BudgetRuns runs = budget_runs(run.spec, run.scene.tolerance);
+  const BudgetRuns runs = budget_runs(run.spec, run.scene.solver.tolerance);
   const std::vector<Json> results =
       to_json(pool.run({runs.observed, runs.tightened, runs.rounded[0], runs.rounded[1]}));
   return split_error(quantity, results[0], results[1], {results[2], results[3]});

@@ -129,7 +129,7 @@ std::vector<Chosen> choose_quantities(const Study& study, const Json& result) {
 
 /// Whether every cell of every grid sticks: then the edges of contact and stick lie between cells.
 bool is_aligned(const solver::Scene& scene, const std::vector<MeshResults>& results) {
-  if (scene.pressure != solver::PressureModel::solved) return false;
+  if (scene.contact.pressure != solver::PressureModel::solved) return false;
   return std::ranges::all_of(results, [](const MeshResults& at) {
     return std::ranges::all_of(at.grids, [](const Json& result) {
       return number_at(result, "stick_cells") ==

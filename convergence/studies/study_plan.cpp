@@ -27,13 +27,13 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
   solver::Scene scene = of_series;
   std::vector<std::string> own = overrides;
   if (across) {
-    if (solver::find_height_map(scene.surfaces) != nullptr || !scene.friction.map.empty()) {
+    if (solver::find_height_map(scene.surfaces) != nullptr || !scene.contact.friction.map.empty()) {
       throw solver::InputError(study.source.string(), "cells", std::to_string(*across),
                                "no cells: the scene's height map or friction map gives the grid");
     }
     own.push_back(cells_override(scene, *across));
     scene = solver::read_scene(study.scene, own);
-    scene.memory_limit = of_series.memory_limit;
+    scene.solver.memory_limit = of_series.solver.memory_limit;
   }
   const solver::Model model = solver::make_model(scene);
   const solver::Grid& grid = model.grid;
@@ -80,9 +80,9 @@ std::vector<Series> make_series(const Study& study, std::optional<double> memory
   }
   for (Series& series : all) {
     solver::Scene scene = solver::read_scene(study.scene, series.overrides);
-    scene.memory_limit = memory_limit;
+    scene.solver.memory_limit = memory_limit;
     if (series.name.empty()) series.name = scene.name;
-    series.tolerance = study.tolerances.empty() ? scene.tolerance : study.tolerances.back();
+    series.tolerance = study.tolerances.empty() ? scene.solver.tolerance : study.tolerances.back();
     for (const Index across : study.cells)
       series.meshes.push_back(make_mesh(study, scene, series.overrides, across));
     if (study.cells.empty()) series.meshes.push_back(make_mesh(study, scene, series.overrides, std::nullopt));

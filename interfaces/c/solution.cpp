@@ -68,7 +68,7 @@ class PlannerLock {
 
 bool needs_exclusive(const Scene& scene) {
   const bool reads_files = convergence::input_files(scene).size() > 1;
-  return reads_files || scene.rounding_seed != 0;
+  return reads_files || scene.solver.rounding_seed != 0;
 }
 
 /// FFTW would reuse plans that it made under another rounding, which give other digits: they end with this.
@@ -147,7 +147,7 @@ void answer_exactly(slipstick_solution& kept, const Scene& scene) {
 
 /// Returns why the answer is not to be trusted; empty if it is.
 std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, const Request& request) {
-  if (scene.model == solver::ModelChoice::exact) {
+  if (scene.solver.model == solver::ModelChoice::exact) {
     answer_exactly(kept, scene);
     return {};
   }
@@ -161,9 +161,10 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
   const convergence::AccuracyTarget target{.error = request.accuracy};
   const bool said =
       solver::SceneReader(request.settings, request.overrides, solver::scene_keys()).has("solver.model");
-  if (!said && convergence::answers_exactly(scene, target.of)) scene.model = solver::ModelChoice::exact;
+  if (!said && convergence::answers_exactly(scene, target.of))
+    scene.solver.model = solver::ModelChoice::exact;
   convergence::require_reachable(scene, target);
-  if (scene.model == solver::ModelChoice::exact) {
+  if (scene.solver.model == solver::ModelChoice::exact) {
     const Json account = convergence::exact_accuracy(scene, target);
     answer_exactly(kept, scene);
     kept.result["accuracy"] = account;
@@ -185,7 +186,7 @@ int solve(const Request& request, slipstick_solution& kept) {
       solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
   const PlannerLock lock(needs_exclusive(scene));
   const bool accurate = request.accuracy != 0;
-  const PlansOfOneRounding plans{scene.rounding_seed != 0};
+  const PlansOfOneRounding plans{scene.solver.rounding_seed != 0};
   const std::string why =
       accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
   if (accurate) kept.text += convergence::accuracy_text(kept.result);

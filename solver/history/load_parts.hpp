@@ -11,10 +11,10 @@
 /// that number.
 namespace slipstick::solver {
 
-/// The loads at the ends of the parts of a step, `scene.substeps` of them; the last one is the step itself.
-/// Tangential loads and imposed motions are interpolated linearly, from their values at the end of the step
-/// before. Where the normal load changes too, the first half of the parts brings it, and the second half the
-/// tangential loads; a single part brings both at once. The first step begins with its normal load.
+/// The loads at the ends of the parts of a step, `scene.solver.substeps` of them; the last one is the step
+/// itself. Tangential loads and imposed motions are interpolated linearly, from their values at the end of
+/// the step before. Where the normal load changes too, the first half of the parts brings it, and the second
+/// half the tangential loads; a single part brings both at once. The first step begins with its normal load.
 std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before);
 
 }  // namespace slipstick::solver

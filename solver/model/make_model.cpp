@@ -52,7 +52,7 @@ ArrayXd make_gap(const Scene& scene, std::vector<Surface> surfaces, const Grid& 
 constexpr Index kCellsOfThread = Index{1} << 15;
 
 int threads_for(const Scene& scene, const Grid& part) {
-  if (scene.threads > 0) return scene.threads;
+  if (scene.solver.threads > 0) return scene.solver.threads;
   if (part.ranks.several()) return 1;  // each process takes a processor
   const Index processors = std::max(1U, std::thread::hardware_concurrency());
   return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
@@ -60,7 +60,7 @@ int threads_for(const Scene& scene, const Grid& part) {
 
 /// The law of the bodies, and of layers that are bonded to them.
 SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
-  if (!is_coated(scene)) return std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
+  if (!is_coated(scene)) return std::make_shared<HalfSpaces>(model.pair, scene.solver.cell_traction);
   const auto dimensionless = [&](const Material& material) {
     CoatedBody body = coated_body(material);
     for (HalfSpace* const half : {&body.surface, &body.base})
@@ -69,7 +69,7 @@ SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
     return body;
   };
   return std::make_shared<CoatedHalfSpaces>(dimensionless(scene.lower), dimensionless(scene.upper),
-                                            scene.cell_traction);
+                                            scene.solver.cell_traction);
 }
 
 /// The law of the bodies and of the layer between them.
@@ -96,8 +96,8 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
   const Grid grid = make_grid(scene, surfaces, softest_pair(lower, upper).effective_modulus());
 
   Model model(grid.h1);
-  const bool full = scene.model == ModelChoice::full;
-  model.shear_coupling = scene.coupling == Coupling::full;
+  const bool full = scene.solver.model == ModelChoice::full;
+  model.shear_coupling = scene.contact.coupling == Coupling::full;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
   require_memory_around(scene, grid);
   model.stress_unit = pair.shear_modulus();
@@ -109,11 +109,11 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
                 .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
   model.law = make_law(scene, model);
   const bool couples = model.law->couples();
-  model.pressure_coupling = scene.coupling == Coupling::pressure || model.shear_coupling ||
-                            (scene.coupling == Coupling::automatic && (full || couples));
-  model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file &&
+  model.pressure_coupling = scene.contact.coupling == Coupling::pressure || model.shear_coupling ||
+                            (scene.contact.coupling == Coupling::automatic && (full || couples));
+  model.hertzian = is_hertzian(surfaces) && scene.contact.pressure != PressureModel::file &&
                    !(model.shear_coupling && couples) && is_bare(scene) && !scene.ends_at_grid_edge;
-  model.friction = with_factors(scene.friction, grid).to_dimensionless(model.stress_unit);
+  model.friction = with_factors(scene.contact.friction, grid).to_dimensionless(model.stress_unit);
   if (const auto load = largest_normal(scene)) {
     model.normal_load = to_dimensionless(*load, model.force_unit());
     if (!std::isnormal(*model.normal_load)) {

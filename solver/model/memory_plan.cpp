@@ -41,7 +41,7 @@ double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
 }
 double bytes_around(const Scene& scene, const Grid& grid) {
-  const bool pressure = scene.friction.is_frictionless() && scene.model == ModelChoice::full;
+  const bool pressure = scene.contact.friction.is_frictionless() && scene.solver.model == ModelChoice::full;
   return field_bytes(pressure ? kFieldsAroundPressure : kFieldsAround, grid.cells());
 }
 
@@ -49,32 +49,32 @@ double bytes_around(const Scene& scene, const Grid& grid) {
 constexpr double kLittleMemory = 0x1p26;
 
 void require_memory(const Scene& scene, const Grid& grid, double bytes) {
-  if (!scene.memory_limit && bytes < kLittleMemory) return;
-  const double most = memory_within(scene.memory_limit);
+  if (!scene.solver.memory_limit && bytes < kLittleMemory) return;
+  const double most = memory_within(scene.solver.memory_limit);
   if (bytes < most) return;
   throw OutOfMemory(
       scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
       fmt::format("what fits in memory: this needs {} with operator = \"{}\", and {} {}; {} less",
-                  bytes_text(bytes), to_string(scene.op), bytes_text(most),
-                  scene.memory_limit ? "are allowed (--memory-limit)" : "are there",
-                  scene.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
-                  : scene.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
-                                                     : "fewer cells take"));
+                  bytes_text(bytes), to_string(scene.solver.op), bytes_text(most),
+                  scene.solver.memory_limit ? "are allowed (--memory-limit)" : "are there",
+                  scene.solver.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
+                  : scene.solver.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
+                                                            : "fewer cells take"));
 }
 
 }  // namespace
 
 void require_memory_for_files(const Scene& scene) {
-  std::vector<std::filesystem::path> files{scene.pressure_file, scene.friction.map};
-  for (const Surface& surface : scene.surfaces) files.push_back(surface.file);
+  std::vector<std::filesystem::path> files{scene.contact.pressure_file, scene.contact.friction.map};
+  for (const Surface& surface : scene.surfaces) files.push_back(surface.map.file);
   for (const std::filesystem::path& file : files) {
     std::error_code error;
     const std::uintmax_t size = file.empty() ? 0 : std::filesystem::file_size(file, error);
     const auto bytes = static_cast<double>(size);
-    if (error || bytes < kLittleMemory || bytes < memory_within(scene.memory_limit)) continue;
+    if (error || bytes < kLittleMemory || bytes < memory_within(scene.solver.memory_limit)) continue;
     throw OutOfMemory(file.string(),
                       fmt::format("holds {}; allowed: what fits in memory, {}", bytes_text(bytes),
-                                  bytes_text(memory_within(scene.memory_limit))));
+                                  bytes_text(memory_within(scene.solver.memory_limit))));
   }
 }
 
@@ -89,18 +89,18 @@ Memory predicted_memory(const Scene& scene, const Model& model, const CandidateF
   const double kept = field_bytes((follows ? before : 0.0) + turns, model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
-  const double normal = scene.pressure == PressureModel::solved
+  const double normal = scene.contact.pressure == PressureModel::solved
                             ? on_part.newton_bytes(part, normal_kernel(), parts.pressure)
                             : 0.0;
   // A solved pressure has the mirrors of the gap. Its tangential displacement lacks the mirrors of torsion.
-  const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
+  const bool whole = model.pressure_coupling || model.forces || scene.contact.pressure == PressureModel::file;
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
   const double coupling =
       moves_by_pressure(scene, model) ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
-  const bool newton = scene.method == Method::coulomb;
+  const bool newton = scene.solver.method == Method::coulomb;
   const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
-                            : scene.friction.is_frictionless()
+                            : scene.contact.friction.is_frictionless()
                                 ? 0.0  // nothing is solved
                                 : elastic.newton_bytes(grid, tangential_kernel(), parts.tractions);
   const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)

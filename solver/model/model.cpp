@@ -20,11 +20,11 @@ Dimensionless Dimensionless::on_grid(const Grid& in_m, const std::array<double, 
 
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part) {
   return {.law = model.law,
-          .kind = scene.op,
+          .kind = scene.solver.op,
           .threads = model.threads,
           .diagonal = part.diagonal() && !part.grid().ranks.several(),
           .at_edge = scene.ends_at_grid_edge,
-          .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),
+          .rounding_seed = static_cast<std::uint64_t>(scene.solver.rounding_seed),
           .cache = model.cache};
 }
 

@@ -7,7 +7,7 @@
 namespace slipstick::solver {
 
 bool reducible(const Scene& scene) {
-  return scene.model != ModelChoice::full && scene.op == OperatorKind::dcfft;
+  return scene.solver.model != ModelChoice::full && scene.solver.op == OperatorKind::dcfft;
 }
 
 namespace {
@@ -25,12 +25,12 @@ ArrayXd carrying(const Model& model, const ArrayXd& pressure, bool is_first) {
 }  // namespace
 
 bool moves_by_pressure(const Scene& scene, const Model& model) {
-  return model.pressure_coupling && model.law->couples() && !scene.friction.is_frictionless();
+  return model.pressure_coupling && model.law->couples() && !scene.contact.friction.is_frictionless();
 }
 
 bool has_translations(const Scene& scene, const Model& model, const ArrayXd& pressure, bool is_first) {
-  if (scene.method != Method::coulomb) return false;
-  return scene.model == ModelChoice::full || model.forces ||
+  if (scene.solver.method != Method::coulomb) return false;
+  return scene.solver.model == ModelChoice::full || model.forces ||
          !is_half_turn_symmetric(model.grid, carrying(model, pressure, is_first));
 }
 
@@ -60,7 +60,7 @@ std::vector<Omission> omissions(const Scene& scene, const Model& model, const Re
         {"K31, K32", "shear leaves the pressure as it is, unless contact.coupling = \"full\""});
   }
   if (!translations) {
-    left_out.push_back({"translations", scene.method == Method::coulomb
+    left_out.push_back({"translations", scene.solver.method == Method::coulomb
                                             ? "no force, and half a turn brings the contact onto itself"
                                             : "this method turns about the origin of the grid"});
   }

@@ -19,7 +19,7 @@ double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / bo
 /// precision holds them.
 std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   const auto& load = scene.steps.front().normal;
-  if (scene.extent || !load || !is_bare(scene)) return scene.extent;
+  if (scene.grid.extent || !load || !is_bare(scene)) return scene.grid.extent;
   const auto plane = [](const Material& body) { return (1.0 - body.poisson_ratio) * compliance(body); };
   try {
     return expected_half_sides(scene.surfaces, scene.combine, *load,
@@ -39,8 +39,9 @@ double forces_over_torsion(const Scene& scene, double reach) {
   for (const Step& step : scene.steps) {
     force = std::max(force, std::hypot(step.force[0], step.force[1]));
     const auto ratio = value_if<MomentRatio>(step.torsion);
-    const double limit =
-        scene.friction.is_coulomb() ? scene.friction.coefficient * step.normal.value_or(0.0) : 0.0;
+    const double limit = scene.contact.friction.is_coulomb()
+                             ? scene.contact.friction.coefficient * step.normal.value_or(0.0)
+                             : 0.0;
     const double moment = value_if<Moment>(step.torsion).value_or(0.0) / reach;
     torsion = std::max(torsion, std::abs(ratio ? *ratio * limit : moment));
   }
@@ -56,7 +57,7 @@ bool are_alike(const Material& upper, const Material& lower) {
 
 Scene without_last_digits(Scene scene) {
   const auto sides = sides_of(scene);
-  if (scene.model == ModelChoice::full || !sides) return scene;
+  if (scene.solver.model == ModelChoice::full || !sides) return scene;
   const auto left_out = [&](const std::string& what) {
     scene.left_out.push_back({what, "less than 1e-12 of what it belongs to"});
   };

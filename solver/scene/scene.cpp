@@ -37,9 +37,9 @@ Surface read_surface(SceneReader& reader, const std::string& table) {
     roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
     roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
   } else if (surface.shape == Shape::height_map) {
-    surface.file = reader.path(table + ".file");
-    surface.spacing = reader.pair(table + ".spacing");
-    surface.height_unit = reader.choice_or(table + ".unit", surface.height_unit, kHeightUnits);
+    surface.map.file = reader.path(table + ".file");
+    surface.map.spacing = reader.pair(table + ".spacing");
+    surface.map.unit = reader.choice_or(table + ".unit", surface.map.unit, kHeightUnits);
   }
   if (!is_measured(surface)) {
     surface.at = reader.find_pair(table + ".at").value_or(surface.at);
@@ -136,7 +136,7 @@ void read_torsion(SceneReader& reader, const std::string& table, Step& step,
     reader.fail(moment ? keys[1] : keys[2], "(with another torsion load beside it)",
                 fmt::format("exactly one of {}", fmt::join(keys, ", ")));
   }
-  if (ratio || moment || twist) step.unsaid.torsion = false;
+  if (ratio || moment || twist) step.inherited.torsion = false;
   if (ratio) torsion = MomentRatio{*ratio};
   if (moment) torsion = Moment{*moment};
   if (twist) torsion = Twist{*twist};
@@ -154,7 +154,7 @@ void read_translation(SceneReader& reader, const std::string& table, Step& step)
   if (displacement) step.force = {};
   if (!force && !displacement) return;
   step.displacement = displacement;
-  step.unsaid.translation = false;
+  step.inherited.translation = false;
 }
 
 /// A step whose torsion may still be missing.
@@ -168,7 +168,7 @@ void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
   step.key = table;
   if (const auto normal = reader.find_number(table + ".normal")) {
     step.normal = normal;
-    step.unsaid.normal = false;
+    step.inherited.normal = false;
   }
   read_torsion(reader, table, step, read.torsion);
   read_translation(reader, table, step);
@@ -179,7 +179,7 @@ void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
 std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   ReadStep load;
   read_loads(reader, "load", load);
-  load.step.unsaid = {true, true, true};
+  load.step.inherited = {true, true, true};
   std::vector<ReadStep> read;
   const std::size_t count = reader.count("step");
   if (count > kMaxSteps) {
@@ -227,9 +227,9 @@ Step step_of(const Scene& scene, std::size_t k) {
   Step step = scene.steps[k % scene.steps.size()];
   if (k < scene.steps.size()) return step;
   const Step& last = scene.steps.back();
-  if (step.unsaid.normal) step.normal = last.normal;
-  if (step.unsaid.torsion) step.torsion = last.torsion;
-  if (step.unsaid.translation) {
+  if (step.inherited.normal) step.normal = last.normal;
+  if (step.inherited.torsion) step.torsion = last.torsion;
+  if (step.inherited.translation) {
     step.force = last.force;
     step.displacement = last.displacement;
   }
@@ -257,30 +257,33 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.lower = read_material(reader, "lower");
   scene.layer = read_layer(reader);
 
-  scene.friction = read_friction(reader);
-  scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);
-  if (scene.pressure == PressureModel::file) scene.pressure_file = reader.path("contact.pressure_file");
-  scene.coupling = reader.choice_or("contact.coupling", scene.coupling, kCouplings);
+  scene.contact.friction = read_friction(reader);
+  scene.contact.pressure = reader.choice_or("contact.pressure", scene.contact.pressure, kPressureModels);
+  if (scene.contact.pressure == PressureModel::file)
+    scene.contact.pressure_file = reader.path("contact.pressure_file");
+  scene.contact.coupling = reader.choice_or("contact.coupling", scene.contact.coupling, kCouplings);
 
-  scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
+  scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file);
   if (scene.steps.size() > 1 || reader.has("cycles")) {
     scene.cycles = static_cast<int>(reader.number_or("cycles", scene.cycles, cycles_of(scene.steps.size())));
   }
 
-  scene.cells = read_cells(reader, scene.surfaces);
-  scene.extent = reader.find_pair("grid.extent");
+  scene.grid.cells = read_cells(reader, scene.surfaces);
+  scene.grid.extent = reader.find_pair("grid.extent");
 
-  scene.method = reader.choice_or("solver.method", scene.method, kMethods);
-  if (!reader.text_or("solver.program", "").empty()) scene.program = reader.path("solver.program");
-  scene.model = reader.choice_or("solver.model", scene.model, kModels);
-  scene.cell_traction = reader.choice_or("solver.cell_traction", scene.cell_traction, kCellTractions);
-  scene.op = reader.choice_or("solver.operator", scene.op, kOperators);
-  scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance);
-  scene.max_iterations = static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations));
-  scene.substeps = static_cast<int>(reader.number_or("solver.substeps", scene.substeps));
-  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads));
-  scene.rounding_seed = static_cast<std::int64_t>(
-      reader.number_or("solver.rounding_seed", static_cast<double>(scene.rounding_seed)));
+  scene.solver.method = reader.choice_or("solver.method", scene.solver.method, kMethods);
+  if (!reader.text_or("solver.program", "").empty()) scene.solver.program = reader.path("solver.program");
+  scene.solver.model = reader.choice_or("solver.model", scene.solver.model, kModels);
+  scene.solver.cell_traction =
+      reader.choice_or("solver.cell_traction", scene.solver.cell_traction, kCellTractions);
+  scene.solver.op = reader.choice_or("solver.operator", scene.solver.op, kOperators);
+  scene.solver.tolerance = reader.number_or("solver.tolerance", scene.solver.tolerance);
+  scene.solver.max_iterations =
+      static_cast<int>(reader.number_or("solver.max_iterations", scene.solver.max_iterations));
+  scene.solver.substeps = static_cast<int>(reader.number_or("solver.substeps", scene.solver.substeps));
+  scene.solver.threads = static_cast<int>(reader.number_or("solver.threads", scene.solver.threads));
+  scene.solver.rounding_seed = static_cast<std::int64_t>(
+      reader.number_or("solver.rounding_seed", static_cast<double>(scene.solver.rounding_seed)));
   reader.reject_unknown();
   validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
     reader.fail(key, value, allowed);

@@ -81,11 +81,11 @@ struct Step {
   TorsionLoad torsion = MomentRatio{0.0};
   std::array<double, 2> force{};                           ///< N, tangential, on the upper body; or else
   std::optional<std::array<double, 2>> displacement = {};  ///< m, imposed instead, since the first step
-  /// Loads that no step of the file has set up to here: they are [load]'s in the first cycle, and those of
-  /// the last step in the cycles that follow.
-  struct Unsaid {
+  /// Loads that neither this step nor an earlier one sets. They are those of [load] in the first cycle and
+  /// those of the last step in later cycles.
+  struct Inherited {
     bool normal = false, torsion = false, translation = false;
-  } unsaid = {};
+  } inherited = {};
 };
 
 /// A part of the problem that the model leaves out, and why the answer does not change by that.
@@ -96,6 +96,38 @@ struct Omission {
 
 /// Whether a step brings a tangential force or displacement.
 bool brings_translation(const Step& step);
+
+/// The keys of [contact].
+struct ContactSettings {
+  FrictionLaw friction = {};
+  PressureModel pressure = PressureModel::solved;
+  std::filesystem::path pressure_file = {};
+  Coupling coupling = Coupling::automatic;
+};
+
+/// The keys of [grid].
+struct GridSettings {
+  std::array<Index, 2> cells{};
+  std::optional<std::array<double, 2>> extent = {};  ///< m
+};
+
+/// The keys of [solver], and the memory that the command line allows.
+struct SolverSettings {
+  /// File of another program that finds pressure and tractions instead of `method`; empty: none does.
+  std::filesystem::path program = {};
+  Method method = Method::coulomb;
+  ModelChoice model = ModelChoice::automatic;
+  OperatorKind op = OperatorKind::dcfft;
+  CellTraction cell_traction = CellTraction::constant;
+  double tolerance = 1e-8;
+  int max_iterations = 5000;
+  int substeps = 1;  ///< parts into which each step's change of load is divided
+  int threads = 0;   ///< of one solve; 0: chosen by the number of cells, at most one for each processor
+  /// 0: round to nearest; otherwise rounding is random with this seed, which shows the digits that depend on
+  /// it.
+  std::int64_t rounding_seed = 0;
+  std::optional<double> memory_limit = {};  ///< bytes; none: the memory that the machine has free
+};
 
 /// The content of a scene file, checked, with defaults filled in; SI units, or any other consistent set.
 struct Scene {
@@ -108,29 +140,11 @@ struct Scene {
   Material upper;
   Material lower;
   Layer layer;
-  FrictionLaw friction;
-  PressureModel pressure = PressureModel::solved;
-  std::filesystem::path pressure_file;
-  Coupling coupling = Coupling::automatic;
+  ContactSettings contact;
   std::vector<Step> steps = std::vector<Step>(1);  ///< at least one
-  int cycles = 1;                                  ///< how often the steps are gone through
-  int substeps = 1;                                ///< parts that each step's loads are brought in
-  std::array<Index, 2> cells{};
-  std::optional<std::array<double, 2>> extent;  ///< m
-  /// File of another program that finds pressure and tractions in place of `method`; empty: none does.
-  std::filesystem::path program;
-  Method method = Method::coulomb;
-  ModelChoice model = ModelChoice::automatic;
-  OperatorKind op = OperatorKind::dcfft;
-  CellTraction cell_traction = CellTraction::constant;
-  double tolerance = 1e-8;
-  int max_iterations = 5000;
-  int threads = 0;  ///< of one solve; 0: as its cells are worth it, up to one a processor
-  /// 0: to nearest; else rounding is random, drawn from the seed, to see which digits depend on it.
-  std::int64_t rounding_seed = 0;
-  /// Bytes that solving it may take; none: what the machine has left. No key of the file: it says nothing of
-  /// the contact.
-  std::optional<double> memory_limit;
+  int cycles = 1;                                  ///< repetitions of the steps
+  GridSettings grid;
+  SolverSettings solver;
   std::vector<Omission> left_out = {};  ///< by without_last_digits()
 };
 

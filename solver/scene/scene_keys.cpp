@@ -55,7 +55,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
       "dataset `height`.",
       map, KeyType::file);
   add("spacing", "m", kRequired, kPositive, "Distance of the file's samples.", map, KeyType::pair);
-  add("unit", "", word_of(kHeightUnits, surface.height_unit), one_of(kHeightUnits),
+  add("unit", "", word_of(kHeightUnits, surface.map.unit), one_of(kHeightUnits),
       "Unit of the file's heights.", map, kWord);
   add("seed", "", kRequired, kSeeds, "Draws the phases of the random surface.", rough);
   add_numbers([](const ShapeNumber& number) { return number.rough != nullptr; });
@@ -119,7 +119,8 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
   const SettingKeys contact{
       {"contact.friction", kNumber, "", "required but with friction_law = \"tresca\"", kNotNegative,
        "Coefficient of friction mu; with friction_law = \"power\" k, Pa^(1 - n)."},
-      {"contact.friction_law", kWord, "", word_of(kFrictionLaws, scene.friction.kind), one_of(kFrictionLaws),
+      {"contact.friction_law", kWord, "", word_of(kFrictionLaws, scene.contact.friction.kind),
+       one_of(kFrictionLaws),
        "The shear that friction carries under a pressure p: mu p (coulomb); the shear strength (tresca); the "
        "lesser of the two (capped); k p^n (power)."},
       {"contact.shear_strength", kNumber, "Pa", "required with friction_law = \"tresca\" or \"capped\"",
@@ -129,13 +130,14 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
       {"contact.friction_map", KeyType::file, "", "\"\"", kAny,
        "Factors of the friction, one a cell: a CSV matrix with a line for each x1, or the HDF5 dataset "
        "`friction`. Empty: 1 everywhere."},
-      {"contact.pressure", kWord, "", word_of(kPressureModels, scene.pressure), one_of(kPressureModels),
+      {"contact.pressure", kWord, "", word_of(kPressureModels, scene.contact.pressure),
+       one_of(kPressureModels),
        "Where the pressure comes from: solved on the same grid, Hertz's at cell centres, Hertz's averaged "
        "over each cell, a file."},
       {"contact.pressure_file", KeyType::file, "", "required with pressure = \"file\"", kAny,
        "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
        "\"file\" alone."},
-      {"contact.coupling", kWord, "", word_of(kCouplings, scene.coupling), one_of(kCouplings),
+      {"contact.coupling", kWord, "", word_of(kCouplings, scene.contact.coupling), one_of(kCouplings),
        "For dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
        "nothing; that displacement; also the shear's normal displacement."}};
   keys.insert(keys.end(), contact.begin(), contact.end());
@@ -148,35 +150,35 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"grid.extent", KeyType::pair, "m", "the expected contact and two cells around it", kPositive,
        "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file. The "
        "expected contact on a bonded layer is that of the softer of layer and base alone."},
-      {"solver.method", kWord, "", word_of(kMethods, scene.method), one_of(kMethods),
+      {"solver.method", kWord, "", word_of(kMethods, scene.solver.method), one_of(kMethods),
        "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
        "published."},
       {"solver.program", KeyType::file, "", "\"\"", kAny,
        "Another program that finds pressure and tractions in place of the method: the TOML file that says "
        "how it is started. It runs only with --allow-programs, or where the command line names it. Empty: "
        "none."},
-      {"solver.operator", kWord, "", word_of(kOperators, scene.op), one_of(kOperators),
+      {"solver.operator", kWord, "", word_of(kOperators, scene.solver.op), one_of(kOperators),
        "Convolution by FFT, direct summation, a dense matrix: the same numbers."},
-      {"solver.tolerance", kNumber, "", shown(scene.tolerance), kTolerance,
+      {"solver.tolerance", kNumber, "", shown(scene.solver.tolerance), kTolerance,
        "Gap over energy at which a solve stops; of the paper's method Eq. (26) over the sum of mu p."},
-      {"solver.max_iterations", kNumber, "", shown(scene.max_iterations), kIterations,
+      {"solver.max_iterations", kNumber, "", shown(scene.solver.max_iterations), kIterations,
        "Iterations after which a solve gives up."},
-      {"solver.model", kWord, "", word_of(kModels, scene.model), one_of(kModels),
+      {"solver.model", kWord, "", word_of(kModels, scene.solver.model), one_of(kModels),
        "Leave out what symmetry and the contact's size allow; nothing; the grid itself, where the scene has "
        "an exact answer."},
-      {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.cell_traction),
+      {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.solver.cell_traction),
        one_of(kCellTractions),
        "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
        "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
        "their edge."},
-      {"solver.substeps", kNumber, "", shown(scene.substeps), kSubsteps,
+      {"solver.substeps", kNumber, "", shown(scene.solver.substeps), kSubsteps,
        "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
        "what a result states as `resolved.path`."},
-      {"solver.threads", kNumber, "", shown(scene.threads), kThreads,
+      {"solver.threads", kNumber, "", shown(scene.solver.threads), kThreads,
        "Threads of one solve, which change no digit. 0: one a processor where the part of the grid that is "
        "solved has many cells, 32,768 for each thread; one for each of many solves (studies, gates)."},
-      {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.rounding_seed)), kRoundingSeeds,
-       "0: to nearest; else every operation is rounded at random, drawn from this seed."}};
+      {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.solver.rounding_seed)),
+       kRoundingSeeds, "0: to nearest; else every operation is rounded at random, drawn from this seed."}};
   keys.insert(keys.end(), solver.begin(), solver.end());
 }
 

@@ -171,8 +171,8 @@ const std::vector<ShapeNumber>& shape_numbers() {
 }
 
 std::vector<double*> lengths(Surface& surface) {
-  std::vector<double*> found{&surface.inner_radius,    &surface.at[0],      &surface.at[1],
-                             &surface.spacing[0],      &surface.spacing[1], &surface.roughness.shortest,
+  std::vector<double*> found{&surface.inner_radius,    &surface.at[0],          &surface.at[1],
+                             &surface.map.spacing[0],  &surface.map.spacing[1], &surface.roughness.shortest,
                              &surface.roughness.period};
   for (const ShapeNumber& number : shape_numbers()) {
     if (number.unit == "m") found.push_back(&number.of(surface));

@@ -26,26 +26,30 @@ struct Roughness {
   double period = 0.0;     ///< at least the longest wavelength
 };
 
+/// A measured surface: one height for each cell, larger where the surface is further away.
+struct HeightMap {
+  std::filesystem::path file{};
+  std::array<double, 2> spacing{};  ///< m, between samples
+  double unit = 1.0;                ///< m in one unit of the file's heights
+  Eigen::ArrayXXd heights{};        ///< m, the least one 0; see with_heights
+};
+
 /// One shape of the indenter; the members that it uses are set. Lengths in m, or any one unit.
 struct Surface {
   Shape shape = Shape::sphere;
-  double radius = 0.0;              ///< sphere; flat_punch
-  double inner_radius = 0.0;        ///< flat_punch: of the hole that makes it an annulus
-  double radius_1 = 0.0;            ///< ellipsoid, radius of curvature along its first axis
-  double radius_2 = 0.0;            ///< along its second
-  double slope = 0.0;               ///< cone: gap over radius
-  double flat_radius = 0.0;         ///< rounded_punch: of the flat face
-  double corner_radius = 0.0;       ///< rounded_punch: gap (r - flat_radius)^2/(2 corner_radius) beyond it
-  double exponent = 0.0;            ///< power: gap coefficient r^exponent, at least 1
-  double coefficient = 0.0;         ///< power: m^(1 - exponent)
-  std::filesystem::path file{};     ///< height_map: one height a cell, larger where further away
-  std::array<double, 2> spacing{};  ///< height_map
-  double height_unit = 1.0;         ///< height_map: m in one unit of the file's heights
-  Roughness roughness{};            ///< roughness
-  std::array<double, 2> at{};       ///< where its axis stands; neither of height maps nor of roughness
-  double angle = 0.0;               ///< rad, from x1 to its first axis, positive towards x2
-
-  Eigen::ArrayXXd heights{};  ///< height_map: from the file, the least one 0; see with_heights
+  double radius = 0.0;         ///< sphere; flat_punch
+  double inner_radius = 0.0;   ///< flat_punch: of the hole that makes it an annulus
+  double radius_1 = 0.0;       ///< ellipsoid, radius of curvature along its first axis
+  double radius_2 = 0.0;       ///< along its second
+  double slope = 0.0;          ///< cone: gap over radius
+  double flat_radius = 0.0;    ///< rounded_punch: of the flat face
+  double corner_radius = 0.0;  ///< rounded_punch: gap (r - flat_radius)^2/(2 corner_radius) beyond it
+  double exponent = 0.0;       ///< power: gap coefficient r^exponent, at least 1
+  double coefficient = 0.0;    ///< power: m^(1 - exponent)
+  HeightMap map{};
+  Roughness roughness{};
+  std::array<double, 2> at{};  ///< position of its axis; a height map and a rough surface have none
+  double angle = 0.0;          ///< rad, from x1 to its first axis, positive towards x2
 };
 
 std::string to_string(Shape shape);

@@ -23,18 +23,18 @@ ArrayXd as_field(const Eigen::ArrayXXd& heights) {
 }
 
 Eigen::ArrayXXd read_heights(const Surface& surface) {
-  const Eigen::ArrayXXd heights = read_matrix(surface.file, "height");
-  const Grid grid{heights.rows(), heights.cols(), surface.spacing[0], surface.spacing[1]};
+  const Eigen::ArrayXXd heights = read_matrix(surface.map.file, "height");
+  const Grid grid{heights.rows(), heights.cols(), surface.map.spacing[0], surface.map.spacing[1]};
   for (Index i = 0; i < grid.n1; ++i) {
     for (Index j = 0; j < grid.n2; ++j) {
       if (std::isfinite(heights(i, j))) continue;
-      throw InputError(surface.file.string(),
+      throw InputError(surface.map.file.string(),
                        fmt::format("row {}, column {} (x1 = {:.6g}, x2 = {:.6g}): no height; allowed: a "
                                    "finite number at every point",
                                    i + 1, j + 1, grid.x1(i), grid.x2(j)));
     }
   }
-  return (heights - heights.minCoeff()) * surface.height_unit;
+  return (heights - heights.minCoeff()) * surface.map.unit;
 }
 
 /// Half the sides of the rectangle, along x1 and x2, about an ellipse that is turned.
@@ -47,7 +47,7 @@ std::array<double, 2> box_of_ellipse(const std::array<double, 2>& semi_axes, dou
 }
 
 ArrayXd gap_field(const Surface& surface, const Grid& grid) {
-  if (surface.shape == Shape::height_map) return as_field(surface.heights);
+  if (surface.shape == Shape::height_map) return as_field(surface.map.heights);
   if (surface.shape == Shape::roughness) return roughness_heights(surface.roughness, grid);
   const ShapeKind& kind = kind_of(surface.shape);
   const double c = std::cos(surface.angle);
@@ -77,8 +77,8 @@ const Surface* find_height_map(const std::vector<Surface>& surfaces) {
 
 std::vector<Surface> with_heights(std::vector<Surface> surfaces) {
   for (Surface& surface : surfaces) {
-    if (surface.shape == Shape::height_map && surface.heights.size() == 0)
-      surface.heights = read_heights(surface);
+    if (surface.shape == Shape::height_map && surface.map.heights.size() == 0)
+      surface.map.heights = read_heights(surface);
   }
   return surfaces;
 }
@@ -88,18 +88,19 @@ std::optional<Grid> height_map_grid(const std::vector<Surface>& surfaces) {
   if (first == nullptr) return std::nullopt;
   for (const Surface& surface : surfaces) {
     if (surface.shape != Shape::height_map) continue;
-    const auto& heights = surface.heights;
-    if (heights.rows() != first->heights.rows() || heights.cols() != first->heights.cols() ||
-        surface.spacing != first->spacing) {
+    const auto& heights = surface.map.heights;
+    if (heights.rows() != first->map.heights.rows() || heights.cols() != first->map.heights.cols() ||
+        surface.map.spacing != first->map.spacing) {
       throw InputError(
-          surface.file.string(),
+          surface.map.file.string(),
           fmt::format("{} x {} heights, {} x {} apart; allowed: {} x {}, {} x {} apart, as in {}",
-                      heights.rows(), heights.cols(), surface.spacing[0], surface.spacing[1],
-                      first->heights.rows(), first->heights.cols(), first->spacing[0], first->spacing[1],
-                      first->file.string()));
+                      heights.rows(), heights.cols(), surface.map.spacing[0], surface.map.spacing[1],
+                      first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0],
+                      first->map.spacing[1], first->map.file.string()));
     }
   }
-  return Grid{first->heights.rows(), first->heights.cols(), first->spacing[0], first->spacing[1]};
+  return Grid{first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0],
+              first->map.spacing[1]};
 }
 
 std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces,
@@ -152,8 +153,8 @@ std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& 
 Surface to_dimensionless(Surface surface, double unit) {
   for (double* const length : lengths(surface)) *length = to_dimensionless(*length, unit);
   surface.coefficient = to_dimensionless(surface.coefficient, std::pow(unit, 1.0 - surface.exponent));
-  surface.heights =
-      surface.heights.unaryExpr([unit](double height) { return to_dimensionless(height, unit); });
+  surface.map.heights =
+      surface.map.heights.unaryExpr([unit](double height) { return to_dimensionless(height, unit); });
   return surface;
 }
 

@@ -26,11 +26,11 @@ class Validation {
     check_friction();
     check_steps();
     check_grid();
-    require("solver.tolerance", scene_.tolerance, kTolerance);
-    require("solver.max_iterations", scene_.max_iterations, kIterations);
-    require("solver.substeps", scene_.substeps, kSubsteps);
-    require("solver.threads", scene_.threads, kThreads);
-    require("solver.rounding_seed", static_cast<double>(scene_.rounding_seed), kRoundingSeeds);
+    require("solver.tolerance", scene_.solver.tolerance, kTolerance);
+    require("solver.max_iterations", scene_.solver.max_iterations, kIterations);
+    require("solver.substeps", scene_.solver.substeps, kSubsteps);
+    require("solver.threads", scene_.solver.threads, kThreads);
+    require("solver.rounding_seed", static_cast<double>(scene_.solver.rounding_seed), kRoundingSeeds);
     check_consistency();
   }
 
@@ -62,8 +62,8 @@ class Validation {
       require(table + ".period", roughness.period, period_for(roughness.longest));
       require(table + ".shortest", roughness.shortest, shortest_for(roughness.longest, roughness.period));
     } else if (surface.shape == Shape::height_map) {
-      for (const double spacing : surface.spacing) require(table + ".spacing", spacing, kPositive);
-      require(table + ".unit", surface.height_unit, kPositive);
+      for (const double spacing : surface.map.spacing) require(table + ".spacing", spacing, kPositive);
+      require(table + ".unit", surface.map.unit, kPositive);
     }
     for (const double at : surface.at) require(table + ".at", at, kFinite);
     require(table + ".angle", surface.angle, kFinite);
@@ -82,7 +82,7 @@ class Validation {
   }
 
   void check_friction() const {
-    const FrictionLaw& law = scene_.friction;
+    const FrictionLaw& law = scene_.contact.friction;
     require("contact.friction", law.coefficient, kNotNegative);
     if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
       require("contact.shear_strength", law.shear_strength, kPositive);
@@ -107,7 +107,7 @@ class Validation {
     require("cycles", scene_.cycles, cycles_of(scene_.steps.size()));
     for (const Step& step : scene_.steps) {
       if (step.normal) require(step.key + ".normal", *step.normal, kPositive);
-      if (!step.normal && scene_.pressure != PressureModel::file) {
+      if (!step.normal && scene_.contact.pressure != PressureModel::file) {
         refuse_(step.key + ".normal", "(missing)", kPositive.words);
       }
       if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
@@ -129,28 +129,28 @@ class Validation {
 
   void check_grid() const {
     const bool as_samples =
-        find_height_map(scene_.surfaces) != nullptr && scene_.cells == std::array<Index, 2>{};
-    for (const Index cells : scene_.cells) {
+        find_height_map(scene_.surfaces) != nullptr && scene_.grid.cells == std::array<Index, 2>{};
+    for (const Index cells : scene_.grid.cells) {
       if (!as_samples) require("grid.cells", static_cast<double>(cells), kCells);
     }
-    if (!scene_.extent) return;
-    for (const double extent : *scene_.extent) require("grid.extent", extent, kPositive);
+    if (!scene_.grid.extent) return;
+    for (const double extent : *scene_.grid.extent) require("grid.extent", extent, kPositive);
   }
 
   /// The paper's method and projected gradients know torsion about the origin alone.
   void check_method() const {
-    if (scene_.method == Method::coulomb) return;
+    if (scene_.solver.method == Method::coulomb) return;
     const Step& step = scene_.steps.front();
-    if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.substeps > 1 || step.displacement ||
+    if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.solver.substeps > 1 || step.displacement ||
         step.force != std::array<double, 2>{}) {
-      refuse_("solver.method", fmt::format("\"{}\"", to_string(scene_.method)),
+      refuse_("solver.method", fmt::format("\"{}\"", to_string(scene_.solver.method)),
               "coulomb (this method knows one step of torsion about the origin)");
     }
   }
 
   void check_consistency() const {
     check_method();
-    if (scene_.coupling == Coupling::full && scene_.pressure != PressureModel::solved) {
+    if (scene_.contact.coupling == Coupling::full && scene_.contact.pressure != PressureModel::solved) {
       refuse_("contact.coupling", "\"full\"",
               "auto, none, pressure (shear changes a pressure only where that is solved: "
               "contact.pressure = \"solved\")");
@@ -161,21 +161,21 @@ class Validation {
     if (is_rigid(scene_.upper) && is_rigid(scene_.lower)) {
       refuse_("lower.rigid", "true", "false, since the upper body is rigid");
     }
-    const bool asks_hertz =
-        scene_.pressure == PressureModel::hertz || scene_.pressure == PressureModel::hertz_averaged;
+    const bool asks_hertz = scene_.contact.pressure == PressureModel::hertz ||
+                            scene_.contact.pressure == PressureModel::hertz_averaged;
     if (asks_hertz && !is_bare(scene_)) {
-      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
+      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
               "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
     }
     if (asks_hertz && !hertzian_radii(scene_.surfaces)) {
-      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
+      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
               "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
               "along the grid's)");
     }
-    if (find_height_map(scene_.surfaces) != nullptr && scene_.extent) {
+    if (find_height_map(scene_.surfaces) != nullptr && scene_.grid.extent) {
       refuse_("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
     }
-    if (scene_.pressure == PressureModel::file && !scene_.extent) {
+    if (scene_.contact.pressure == PressureModel::file && !scene_.grid.extent) {
       refuse_("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
     }
   }

@@ -27,8 +27,8 @@ double counted_by_side(const Scene& scene) {
   const bool is_face = std::ranges::any_of(
       scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
   // Hertz's pressure is that at the centres of cells.
-  if (is_face || scene.pressure == PressureModel::hertz) return 0.0;
-  return scene.pressure == PressureModel::hertz_averaged ? kCutBySide : kCountedBySide;
+  if (is_face || scene.contact.pressure == PressureModel::hertz) return 0.0;
+  return scene.contact.pressure == PressureModel::hertz_averaged ? kCutBySide : kCountedBySide;
 }
 
 ContactNumbers describe_contact(const Scene& scene, const Model& model, const NormalSolution& normal) {

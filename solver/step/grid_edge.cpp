@@ -117,8 +117,9 @@ ArrayXd opening(const Model& model, const Grid& larger, const ArrayXd& pressure,
 bool goes_on_beyond(const Scene& scene, const Model& model, const NormalSolution& normal,
                     const ArrayXd& traction) {
   const bool at_edge = reaches_edge(model.grid, normal.pressure);
-  if (find_height_map(scene.surfaces) != nullptr || scene.pressure == PressureModel::file) return at_edge;
-  if (scene.pressure != PressureModel::solved) return false;  // Hertz's fits, or there is no model
+  if (find_height_map(scene.surfaces) != nullptr || scene.contact.pressure == PressureModel::file)
+    return at_edge;
+  if (scene.contact.pressure != PressureModel::solved) return false;  // Hertz's fits, or there is no model
   // Away from the axis of one shape the gap only grows.
   if (!at_edge && scene.surfaces.size() == 1 && !is_measured(scene.surfaces.front())) return false;
   const Grid larger = surroundings(scene, model, normal.approach);
@@ -148,20 +149,20 @@ std::array<double, 2> sides_around(const Model& model, const ArrayXd& pressure) 
 std::optional<std::array<double, 2>> sufficient_extent(Scene scene, const Model& model, Step step) {
   step.normal = *model.normal_load * model.force_unit();
   scene.steps = {step};
-  scene.coupling = Coupling::none;
-  scene.model = ModelChoice::automatic;
-  scene.op = OperatorKind::dcfft;
-  scene.method = Method::coulomb;
-  scene.friction.map.clear();  // of the scene's own grid; no friction enters
+  scene.contact.coupling = Coupling::none;
+  scene.solver.model = ModelChoice::automatic;
+  scene.solver.op = OperatorKind::dcfft;
+  scene.solver.method = Method::coulomb;
+  scene.contact.friction.map.clear();  // of the scene's own grid; no friction enters
   std::array<double, 2> extent = extent_of(model);
   const double longer = std::max(extent[0], extent[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     const double cells = std::ceil(0.5 * kTrialCells * extent[i] / longer);
-    scene.cells[i] = 2 * std::max<Index>(4, static_cast<Index>(cells));
+    scene.grid.cells[i] = 2 * std::max<Index>(4, static_cast<Index>(cells));
   }
   for (int trial = 0; trial < kTrials; ++trial) {
     for (double& side : extent) side *= 2.0;
-    scene.extent = extent;
+    scene.grid.extent = extent;
     const Model larger = make_model(scene);
     const NormalSolution normal = find_pressure(scene, larger, step);
     if (normal.status == Status::converged && !goes_on_beyond(scene, larger, normal, {})) {
@@ -179,10 +180,10 @@ std::string allowed(const Scene& scene, const Model& model, const Step& step) {
         "a height map that is larger than the contact, which reaches the outermost points of {}; {}",
         map->file.string(), ends);
   }
-  if (scene.pressure == PressureModel::file) {
+  if (scene.contact.pressure == PressureModel::file) {
     return fmt::format(
         "a grid with free cells around the pressure, which reaches the outermost ones in {}; {}",
-        scene.pressure_file.string(), ends);
+        scene.contact.pressure_file.string(), ends);
   }
   const auto extent = extent_of(model);
   const std::string cut = fmt::format("the contact extends beyond the grid's edge under {} N", *step.normal);

@@ -20,10 +20,10 @@ constexpr double kLoadTolerance = 1e-2;
 constexpr double kPressureTolerance = 1e-10;
 
 Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
-  const std::string file = scene.pressure_file.string();
-  const auto columns = read_columns(scene.pressure_file, {"x1", "x2", "pressure"});
+  const std::string file = scene.contact.pressure_file.string();
+  const auto columns = read_columns(scene.contact.pressure_file, {"x1", "x2", "pressure"});
   const Grid& grid = model.grid;
-  const std::vector<Index> cells = cells_of_rows(scene.pressure_file, model.grid_in_m(), columns);
+  const std::vector<Index> cells = cells_of_rows(scene.contact.pressure_file, model.grid_in_m(), columns);
   Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
   for (std::size_t row = 0; row < cells.size(); ++row) {
     const double value = columns[2].values[static_cast<Index>(row)];
@@ -59,23 +59,23 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
   Eigen::ArrayXd gap;  // where it is not the model's
   if (opening.size() > 0) gap = model.gap + opening;
   if (part.trimmed() || part.quadrant()) gap = part.restricted(model.gap);
-  NormalSolution solution =
-      solve_normal_contact(elasticity(scene, model, part), part.grid(),
-                           {.gap = gap.size() > 0 ? gap : model.gap,
-                            .total_pressure = normal_load / model.grid.cell_area() / images,
-                            .guess = part.restricted(goal.guess)},
-                           {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),
-                            .refine_approach = goal.gap == 0.0,
-                            .progress = progress,
-                            .on_cells_known = [&](double of_cells) {
-                              require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
-                            }});
+  NormalSolution solution = solve_normal_contact(
+      elasticity(scene, model, part), part.grid(),
+      {.gap = gap.size() > 0 ? gap : model.gap,
+       .total_pressure = normal_load / model.grid.cell_area() / images,
+       .guess = part.restricted(goal.guess)},
+      {.tolerance = std::max(std::min(kPressureTolerance, scene.solver.tolerance), goal.gap),
+       .refine_approach = goal.gap == 0.0,
+       .progress = progress,
+       .on_cells_known = [&](double of_cells) {
+         require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
+       }});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(std::move(solution.pressure), normal_symmetry());
   // Shear opens the gap with the symmetry of its friction.
   const bool shear_turns = opening.size() == 0 || !model.friction.factors ||
                            is_half_turn_symmetric(model.grid, *model.friction.factors);
-  if (scene.model != ModelChoice::full && !model.forces && shear_turns &&
+  if (scene.solver.model != ModelChoice::full && !model.forces && shear_turns &&
       is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
   }
@@ -91,14 +91,15 @@ HertzContact under_part_of_load(const HertzContact& contact, double part) {
 }  // namespace
 
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
-                             const Eigen::ArrayXd& opening, const StaggeredTarget& goal, const Progress& progress) {
-  if (scene.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
+                             const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
+                             const Progress& progress) {
+  if (scene.contact.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
   const double load = to_dimensionless(*step.normal, model.force_unit());
-  if (scene.pressure == PressureModel::solved)
+  if (scene.contact.pressure == PressureModel::solved)
     return solved_pressure(scene, model, load, opening, goal, progress);
   const HertzContact hertz = under_part_of_load(*model.hertz, load / *model.normal_load);
-  return given(scene.pressure == PressureModel::hertz ? hertz_at_centres(hertz, model.grid)
-                                                      : hertz_cell_averages(hertz, model.grid));
+  return given(scene.contact.pressure == PressureModel::hertz ? hertz_at_centres(hertz, model.grid)
+                                                              : hertz_cell_averages(hertz, model.grid));
 }
 
 }  // namespace slipstick::solver

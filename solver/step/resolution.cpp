@@ -154,7 +154,7 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double cell = std::sqrt(0.5 * (cell1 * cell1 + cell2 * cell2));
   // 1 where the friction bound does not fall towards the edge, and soon little where it does.
   const double edge = std::pow(std::min(1.0, contact.edge / contact.mean), 3);
-  const MeshErrors errors = mesh_errors(scene.pressure);
+  const MeshErrors errors = mesh_errors(scene.contact.pressure);
   const double small = std::clamp(1.0 - result.stick_width / kWideStick, 0.0, 1.0);
   // Errors of the contact's area, and cells that counting adds to it under a pressure that is solved.
   const double by_area = is_bare(scene) ? kStiffnessByArea : kStiffnessByAreaOnLayer;

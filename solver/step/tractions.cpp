@@ -84,10 +84,10 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
 /// all of the contact slips; it may be as large as the tolerance of the tractions.
 void require_centred(const Scene& scene, const ArrayXd& bound) {
   const double odd = 0.5 * (bound - bound.reverse()).abs().sum() / bound.sum();
-  const double allowed = std::max(scene.tolerance, kMirrorRounding);
+  const double allowed = std::max(scene.solver.tolerance, kMirrorRounding);
   if (odd <= allowed) return;
   throw InputError(
-      scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
+      scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.solver.method)),
       fmt::format(
           "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
           "torsion about the origin only, and {:.3g} of this pressure is odd (allowed: {:.3g})",
@@ -95,7 +95,8 @@ void require_centred(const Scene& scene, const ArrayXd& bound) {
 }
 
 [[noreturn]] void refuse_infinite(const Scene& scene) {
-  throw InputError(scene.source.string(), "contact.friction", fmt::format("{}", scene.friction.coefficient),
+  throw InputError(scene.source.string(), "contact.friction",
+                   fmt::format("{}", scene.contact.friction.coefficient),
                    "a law that is finite under the pressure of every cell");
 }
 
@@ -174,10 +175,10 @@ void expand(TangentialSolution& solution, const Reduction& part) {
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
                             TangentialProblem problem, const Progress& progress, double gap) {
   const Elasticity elastic = elasticity(scene, model, part);
-  if (scene.method == Method::coulomb) {
+  if (scene.solver.method == Method::coulomb) {
     return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
-                                   {.tolerance = std::max(scene.tolerance, gap),
-                                    .max_applications = scene.max_iterations,
+                                   {.tolerance = std::max(scene.solver.tolerance, gap),
+                                    .max_applications = scene.solver.max_iterations,
                                     .refine_motion = gap == 0.0,
                                     .progress = progress,
                                     .on_cells_known = [&](double of_cells) {
@@ -186,13 +187,14 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
   TangentialSolution solution =
-      scene.method == Method::paper
-          ? solve_by_paper_method(
-                *op, problem,
-                {.tolerance = scene.tolerance, .max_iterations = scene.max_iterations, .progress = progress})
+      scene.solver.method == Method::paper
+          ? solve_by_paper_method(*op, problem,
+                                  {.tolerance = scene.solver.tolerance,
+                                   .max_iterations = scene.solver.max_iterations,
+                                   .progress = progress})
           : solve_by_projected_gradient(*op, problem,
-                                        {.tolerance = scene.tolerance,
-                                         .max_iterations = scene.max_iterations,
+                                        {.tolerance = scene.solver.tolerance,
+                                         .max_iterations = scene.solver.max_iterations,
                                          .start = {},
                                          .progress = progress});
   solution.grids = {
@@ -204,7 +206,7 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
 
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
                    const ContactState& before) {
-  if (scene.method != Method::coulomb) require_centred(scene, pressure);
+  if (scene.solver.method != Method::coulomb) require_centred(scene, pressure);
   LoadStep loads{};
   loads.is_coulomb = model.friction.is_coulomb();
   TangentialProblem& problem = loads.problem;
@@ -233,7 +235,8 @@ void require_carried(const Scene& scene, const Model& model, const Step& step, c
 }
 
 FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads, const ArrayXd& pressure,
-                              const ContactState& before, const Progress& progress, const StaggeredTarget& goal) {
+                              const ContactState& before, const Progress& progress,
+                              const StaggeredTarget& goal) {
   const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
   const bool translations = loads.problem.force || loads.problem.displacement;
   TangentialProblem problem = reduced(loads.problem, part);
@@ -250,7 +253,8 @@ ArrayXd complete_slip(ArrayXd slip, const TangentialSolution& solution, const Sc
   const auto free = ((pressure > 0.0) && (bound == 0.0)).replicate(2, 1);
   if (!free.any()) return slip;
   const bool rests = solution.twist == 0.0 && solution.displacement == std::array<double, 2>{};
-  if (scene.friction.is_frictionless() && rests && !moves_by_pressure(scene, model)) return slip;  // zero
+  if (scene.contact.friction.is_frictionless() && rests && !moves_by_pressure(scene, model))
+    return slip;  // zero
   const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
   ArrayXd u = part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction)
                                                          : solution.traction);

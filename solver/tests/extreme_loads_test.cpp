@@ -135,10 +135,10 @@ TEST(SmallFriction, BetweenDissimilarBodiesEndsAsItSays) {
   scene.lower = {70e9, 0.33};
   for (const double friction : {1e-12, 1e-9, 1e-6}) {
     SCOPED_TRACE(friction);
-    scene.friction.coefficient = friction;
+    scene.contact.friction.coefficient = friction;
     const ModelSolution solution = solve_in_model_units(scene);
     const Certificate& certificate = solution.certificate;
-    const bool within = std::min(certificate.gap, certificate.energy_error) <= scene.tolerance;
+    const bool within = std::min(certificate.gap, certificate.energy_error) <= scene.solver.tolerance;
     EXPECT_EQ(within, friction > 1e-10);
     EXPECT_EQ(solution.status == Status::converged, within) << solution.message;
     EXPECT_TRUE(within || solution.message.find("rounding") != std::string::npos) << solution.message;

@@ -28,16 +28,16 @@ const std::string kBodies =
 
 Scene scene_under(FrictionKind kind, double moment_ratio = 0.7) {
   Scene scene = paper_scene(32, moment_ratio);
-  scene.tolerance = 1e-12;
-  scene.friction.kind = kind;
-  scene.friction.shear_strength = kStrength;
+  scene.solver.tolerance = 1e-12;
+  scene.contact.friction.kind = kind;
+  scene.contact.friction.shear_strength = kStrength;
   return scene;
 }
 
 Solution solved_under(const Scene& scene) {
   const Solution solution = solve(scene);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
-  EXPECT_LE(solution.certificate.gap, scene.tolerance);
+  EXPECT_LE(solution.certificate.gap, scene.solver.tolerance);
   return solution;
 }
 
@@ -66,21 +66,21 @@ TEST(FrictionLaw, TrescasSlippingCellsCarryItsStrength) {
 TEST(FrictionLaw, IsCoulombsWithTheFirstPowerAndWithAHighCap) {
   const Solution coulomb = solved_under(scene_under(FrictionKind::coulomb));
   Scene power = scene_under(FrictionKind::power);
-  power.friction.exponent = 1.0;
+  power.contact.friction.exponent = 1.0;
   expect_same_tractions(solved_under(power), coulomb);
   Scene capped = scene_under(FrictionKind::capped);
-  capped.friction.shear_strength = 1.1 * paper::kFriction * paper::kPeakPressure;
+  capped.contact.friction.shear_strength = 1.1 * paper::kFriction * paper::kPeakPressure;
   expect_same_tractions(solved_under(capped), coulomb);
 }
 
 TEST(FrictionLaw, IsTrescasWithALowCapOrPower) {
   const Solution tresca = solved_under(scene_under(FrictionKind::tresca));
   Scene capped = scene_under(FrictionKind::capped);
-  capped.friction.coefficient = 1e6;
+  capped.contact.friction.coefficient = 1e6;
   expect_same_tractions(solved_under(capped), tresca);
   Scene power = scene_under(FrictionKind::power);
-  power.friction.exponent = 1e-6;
-  power.friction.coefficient = kStrength;
+  power.contact.friction.exponent = 1e-6;
+  power.contact.friction.coefficient = kStrength;
   const Solution nearly = solved_under(power);
   EXPECT_LE(relative_difference(nearly.traction, tresca.traction), 1e-4);  // p^1e-6 of 1 Pa to 2e9 Pa
 }
@@ -88,14 +88,14 @@ TEST(FrictionLaw, IsTrescasWithALowCapOrPower) {
 TEST(FrictionLaw, IsTheSameByEveryMethodAndModel) {
   for (const FrictionKind kind : {FrictionKind::tresca, FrictionKind::power}) {
     Scene scene = scene_under(kind, 0.5);
-    scene.friction.exponent = 0.6;
-    scene.tolerance = 1e-10;
+    scene.contact.friction.exponent = 0.6;
+    scene.solver.tolerance = 1e-10;
     const Solution reference = solved_under(scene);
     Scene full = scene;
-    full.model = ModelChoice::full;
+    full.solver.model = ModelChoice::full;
     const Solution whole = solved_under(full);
     EXPECT_LE(relative_difference(whole.traction, reference.traction), 1e-6);
-    scene.method = Method::projected_gradient;
+    scene.solver.method = Method::projected_gradient;
     EXPECT_LE(relative_difference(solved_under(scene).traction, reference.traction), 1e-4);
   }
 }
@@ -119,7 +119,7 @@ class FrictionMap : public testing::Test {
   template <typename Factor>
   Scene with_map(const Factor& factor, Index rows = 24) {
     Scene scene = paper_scene(24, 0.6);
-    scene.tolerance = 1e-12;
+    scene.solver.tolerance = 1e-12;
     return with_map(scene, factor, {rows, 24});
   }
   template <typename Factor>
@@ -129,7 +129,7 @@ class FrictionMap : public testing::Test {
       for (Index j = 0; j < cells[1]; ++j) stream << (j > 0 ? "," : "") << factor(i, j);
       stream << '\n';
     }
-    scene.friction.map = file_;
+    scene.contact.friction.map = file_;
     return scene;
   }
   static void push_then_twist(Scene& scene) {
@@ -144,7 +144,7 @@ class FrictionMap : public testing::Test {
 TEST_F(FrictionMap, OfOneNumberIsACoefficient) {
   const Solution mapped = solved_under(with_map([](Index, Index) { return 2.0; }));
   Scene scene = with_map([](Index, Index) { return 2.0; });
-  scene.friction = 2.0 * paper::kFriction;
+  scene.contact.friction = 2.0 * paper::kFriction;
   expect_same_tractions(mapped, solved_under(scene));
 }
 
@@ -156,41 +156,41 @@ TEST_F(FrictionMap, OfOnesChangesNoDigit) {
       {"full coupling",
        [](Scene& scene) {
          scene.lower.young_modulus = 70e9;
-         scene.coupling = Coupling::full;
+         scene.contact.coupling = Coupling::full;
        }},
-      {"all of the model", [](Scene& scene) { scene.model = ModelChoice::full; }},
+      {"all of the model", [](Scene& scene) { scene.solver.model = ModelChoice::full; }},
       {"a force and steps", push_then_twist},
       {"parts of steps",
        [](Scene& scene) {
          push_then_twist(scene);
-         scene.substeps = 2;
+         scene.solver.substeps = 2;
        }},
       {"an oblong grid",
        [](Scene& scene) {
-         scene.cells = {27, 16};
+         scene.grid.cells = {27, 16};
          push_then_twist(scene);
        }},
       {"off the centre",
        [](Scene& scene) {
          scene.surfaces.front().at = {1.3e-4, -0.4e-4};
-         scene.extent = {1.6e-3, 1.4e-3};
+         scene.grid.extent = {1.6e-3, 1.4e-3};
        }},
-      {"a strength", [](Scene& scene) { scene.friction.kind = FrictionKind::tresca; }},
+      {"a strength", [](Scene& scene) { scene.contact.friction.kind = FrictionKind::tresca; }},
       {"a rough sphere", [](Scene& scene) {
          scene.surfaces.push_back(scene.surfaces.front());
          scene.surfaces.back().shape = Shape::roughness;
          scene.surfaces.back().roughness = {
              .seed = 1, .hurst = 0.8, .longest = 4e-4, .shortest = 1e-4, .rms_slope = 1e-3, .period = 2e-3};
-         scene.extent = {1.4e-3, 1.4e-3};
+         scene.grid.extent = {1.4e-3, 1.4e-3};
        }}};
   for (const auto& [name, change] : changes) {
     SCOPED_TRACE(name);
     Scene scene = paper_scene(24, 0.6);
-    scene.friction.shear_strength = kStrength;
+    scene.contact.friction.shear_strength = kStrength;
     change(scene);
     const Solution plain = solve(scene);
     const Solution mapped = solve(with_map(
-        scene, [](Index, Index) { return 1; }, scene.cells));
+        scene, [](Index, Index) { return 1; }, scene.grid.cells));
     EXPECT_EQ(plain.status, Status::converged);
     EXPECT_TRUE((mapped.traction == plain.traction).all());
     EXPECT_TRUE((mapped.slip == plain.slip).all());
@@ -203,11 +203,11 @@ TEST_F(FrictionMap, OfOnesChangesNoDigit) {
 TEST_F(FrictionMap, LeavesOpenWhatTheLengthOfItsStepsDoes) {
   const auto factor = [](Index i, Index j) { return 0.4 + 0.05 * static_cast<double>((7 * i + 3 * j) % 17); };
   Scene scene = paper_scene(37, 0.6);
-  scene.cells = {37, 31};
+  scene.grid.cells = {37, 31};
   push_then_twist(scene);
-  scene = with_map(scene, factor, scene.cells);
+  scene = with_map(scene, factor, scene.grid.cells);
   const Solution few = solved_under(scene);
-  scene.substeps = 32;
+  scene.solver.substeps = 32;
   const Solution many = solved_under(scene);
   const double off = std::abs(few.twist_angle - many.twist_angle);
   EXPECT_GT(off, 1e-3 * many.twist_angle);
@@ -218,14 +218,14 @@ TEST_F(FrictionMap, LeavesOpenWhatTheLengthOfItsStepsDoes) {
 TEST_F(FrictionMap, GivesPressureItsAsymmetryUnderFullCoupling) {
   Scene scene = paper_scene(20, 0.5);
   scene.lower.young_modulus = 70e9;
-  scene.coupling = Coupling::full;
-  scene.tolerance = 1e-12;
+  scene.contact.coupling = Coupling::full;
+  scene.solver.tolerance = 1e-12;
   scene = with_map(
-      scene, [](Index i, Index j) { return 0.25 * static_cast<double>((3 * i + j) % 5); }, scene.cells);
+      scene, [](Index i, Index j) { return 0.25 * static_cast<double>((3 * i + j) % 5); }, scene.grid.cells);
   const Solution solution = solved_under(scene);
   EXPECT_GT((solution.pressure - solution.pressure.reverse()).abs().maxCoeff(),
             1e-4 * solution.pressure.maxCoeff());
-  scene.model = ModelChoice::full;
+  scene.solver.model = ModelChoice::full;
   expect_same_tractions(solved_under(scene), solution);
 }
 
@@ -236,11 +236,11 @@ TEST_F(FrictionMap, IsAsAsymmetricAfterALoadThatHasBeenLarger) {
   scene.steps.assign(3, scene.steps.front());
   scene.steps[1].normal = 0.4 * paper::kLoad;
   scene.steps[2].normal = 0.3 * paper::kLoad;
-  scene.tolerance = 1e-12;
+  scene.solver.tolerance = 1e-12;
   scene = with_map(
-      scene, [](Index i, Index) { return i < 21 ? 1.0 : 0.2; }, scene.cells);
+      scene, [](Index i, Index) { return i < 21 ? 1.0 : 0.2; }, scene.grid.cells);
   const Solution solution = solved_under(scene);
-  scene.model = ModelChoice::full;
+  scene.solver.model = ModelChoice::full;
   expect_same_tractions(solved_under(scene), solution);
 }
 
@@ -263,7 +263,7 @@ TEST_F(FrictionMap, LetsCellsWithoutFrictionSlip) {
   scene.steps.assign(2, scene.steps.front());
   scene.steps[1].torsion = MomentRatio{0.6};
   scene = with_map(
-      scene, [](Index i, Index) { return i < 12 ? 0.0 : 1.0; }, scene.cells);
+      scene, [](Index i, Index) { return i < 12 ? 0.0 : 1.0; }, scene.grid.cells);
   std::vector<Solution> steps;
   SolveOptions options;
   options.observer.step = [&](const Solution& step) { steps.push_back(step); };
@@ -302,7 +302,7 @@ TEST_F(FrictionMap, OrALawWithoutFrictionCarriesNoMoment) {
   std::vector<Scene> scenes;
   for (const FrictionKind kind : {FrictionKind::coulomb, FrictionKind::capped, FrictionKind::power}) {
     scenes.push_back(scene_under(kind));
-    scenes.back().friction.coefficient = 0.0;
+    scenes.back().contact.friction.coefficient = 0.0;
   }
   for (int k = 0; k < 5; ++k) {
     Scene scene = k < 3   ? scenes[static_cast<std::size_t>(k)]
@@ -343,8 +343,8 @@ TEST_F(FrictionMap, IsRefusedWithTheWrongSizeOrNumber) {
 
 TEST(FrictionLaw, IsRefusedWhereItIsInfinite) {
   Scene scene = scene_under(FrictionKind::power);
-  scene.friction.exponent = 3.0;
-  scene.friction.coefficient = 1e300;
+  scene.contact.friction.exponent = 3.0;
+  scene.contact.friction.coefficient = 1e300;
   EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr("contact.friction"));
 }
 

@@ -29,7 +29,7 @@ const LawKind& winkler() { return law_kinds().front(); }
 /// The paper's sphere on a grid that holds the contact under any layer here.
 Scene layered_scene(Index cells, double normal, double tangential, double moment_ratio = 0.6) {
   Scene scene = paper_scene(cells, moment_ratio);
-  scene.extent = {{4.0 * paper::kContactRadius, 4.0 * paper::kContactRadius}};
+  scene.grid.extent = {{4.0 * paper::kContactRadius, 4.0 * paper::kContactRadius}};
   scene.layer = {&winkler(), {normal, tangential}};
   return scene;
 }
@@ -60,9 +60,9 @@ TEST(Layer, WithoutComplianceIsNoLayerToTheLastBit) {
 
 TEST(Layer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
   Scene scene = layered_scene(24, kLikeBodies, 0.5 * kLikeBodies);
-  scene.tolerance = 1e-12;
+  scene.solver.tolerance = 1e-12;
   const Solution reference = solved_scene(scene);
-  EXPECT_LE(reference.certificate.gap, scene.tolerance);
+  EXPECT_LE(reference.certificate.gap, scene.solver.tolerance);
   EXPECT_GT(reference.stick_cells, 0);
   EXPECT_LT(reference.stick_cells, reference.contact_cells);
   struct Case {
@@ -73,19 +73,19 @@ TEST(Layer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
   // Projected gradients agree to the root of the gap. In the paper's method a cell keeps the direction in
   // which it began to slip: measured 9e-4, which fades with the mesh.
   for (const auto& [name, change, tolerance] :
-       {Case{"whole", [](Scene& s) { s.model = ModelChoice::full; }, kSame},
-        Case{"direct", [](Scene& s) { s.op = OperatorKind::direct; }, kSame},
-        Case{"dense", [](Scene& s) { s.op = OperatorKind::dense; }, kSame},
-        Case{"threads", [](Scene& s) { s.threads = 3; }, 0.0},
-        Case{"full coupling", [](Scene& s) { s.coupling = Coupling::full; }, kSame},
-        Case{"projected gradients", [](Scene& s) { s.method = Method::projected_gradient; }, 1e-5},
-        Case{"the paper's method", [](Scene& s) { s.method = Method::paper; }, 3e-3}}) {
+       {Case{"whole", [](Scene& s) { s.solver.model = ModelChoice::full; }, kSame},
+        Case{"direct", [](Scene& s) { s.solver.op = OperatorKind::direct; }, kSame},
+        Case{"dense", [](Scene& s) { s.solver.op = OperatorKind::dense; }, kSame},
+        Case{"threads", [](Scene& s) { s.solver.threads = 3; }, 0.0},
+        Case{"full coupling", [](Scene& s) { s.contact.coupling = Coupling::full; }, kSame},
+        Case{"projected gradients", [](Scene& s) { s.solver.method = Method::projected_gradient; }, 1e-5},
+        Case{"the paper's method", [](Scene& s) { s.solver.method = Method::paper; }, 3e-3}}) {
     SCOPED_TRACE(name);
     Scene other = scene;
     change(other);
     const Solution solution = solved_scene(other);
     expect_same(solution, reference, tolerance);
-    EXPECT_LE(solution.certificate.gap, other.method == Method::paper ? 1e-3 : scene.tolerance);
+    EXPECT_LE(solution.certificate.gap, other.solver.method == Method::paper ? 1e-3 : scene.solver.tolerance);
     EXPECT_GE(solution.predicted_bytes, solution.bytes);
   }
 }
@@ -94,17 +94,17 @@ TEST(Layer, UnderDissimilarBodiesIsTheSameOnEachPartOfTheGrid) {
   for (const Coupling coupling : {Coupling::pressure, Coupling::full}) {
     Scene scene = layered_scene(20, 0.3 * kLikeBodies, kLikeBodies);
     scene.upper = {3.0 * paper::kYoungModulus, 0.1};
-    scene.coupling = coupling;
-    scene.tolerance = 1e-12;
+    scene.contact.coupling = coupling;
+    scene.solver.tolerance = 1e-12;
     const Solution reference = solved_scene(scene);
-    scene.op = OperatorKind::direct;
+    scene.solver.op = OperatorKind::direct;
     expect_same(solved_scene(scene), reference, kSame);
   }
 }
 
 TEST(Layer, NeedsAnExtent) {
   Scene scene = layered_scene(16, kLikeBodies, kLikeBodies);
-  scene.extent.reset();
+  scene.grid.extent.reset();
   EXPECT_THAT(complaint([&] { solve(scene); }), testing::HasSubstr("grid.extent = (missing)"));
 }
 
@@ -124,12 +124,12 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   const double compliance = 1e6 * kLikeBodies;
   Scene scene = paper_scene(32, 0.0);
   const double reach = 0.1 * paper::kRadius;
-  scene.extent = {{2.4 * reach, 2.4 * reach}};
+  scene.grid.extent = {{2.4 * reach, 2.4 * reach}};
   scene.layer = {&winkler(), {compliance, compliance}};
   // W = pi R delta^2/c where a^2 = 2 R delta.
   const double approach = reach * reach / (2.0 * paper::kRadius);
   scene.steps[0].normal = M_PI * paper::kRadius * approach * approach / compliance;
-  scene.steps[0].torsion = Twist{0.5 * scene.friction.coefficient * approach / reach};
+  scene.steps[0].torsion = Twist{0.5 * scene.contact.friction.coefficient * approach / reach};
   const Solution solution = solved_scene(scene);
   const Grid& grid = solution.grid;
   const ArrayXd square = cell_x1(grid).square() + cell_x2(grid).square();
@@ -138,7 +138,7 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   EXPECT_NEAR(solution.approach / approach, 1.0, 0.01);  // cells of the edge
   EXPECT_LE(relative_difference(solution.pressure, pressure), kBodiesPart);
   const ArrayXd sticking = solution.twist_angle * square.sqrt() / compliance;
-  const ArrayXd expected = sticking.min(scene.friction.coefficient * pressure);
+  const ArrayXd expected = sticking.min(scene.contact.friction.coefficient * pressure);
   EXPECT_LE(relative_difference(norms(solution.traction), expected), kBodiesPart);
   EXPECT_GT(solution.stick_cells, 0);
   EXPECT_LT(solution.stick_cells, solution.contact_cells);
@@ -152,8 +152,8 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
 Scene coated_scene(double thickness, double modulus, double poisson_ratio = 0.3) {
   Scene scene = layered_scene(32, 0.0, 0.0);
   scene.layer = {};
-  scene.coupling = Coupling::none;
-  scene.tolerance = 1e-11;
+  scene.contact.coupling = Coupling::none;
+  scene.solver.tolerance = 1e-11;
   scene.lower.coating = {thickness * paper::kContactRadius, modulus * paper::kYoungModulus, poisson_ratio};
   return scene;
 }
@@ -178,7 +178,7 @@ TEST(BondedLayer, GoesFromTheBaseToTheLayer) {
     EXPECT_NEAR(beyond(layer, 100.0) / beyond(layer, 200.0), 8.0, 0.08);
   }
   Scene alike = coated_scene(0.3, 1.0);
-  alike.coupling = Coupling::automatic;
+  alike.contact.coupling = Coupling::automatic;
   expect_same(solved_scene(alike), solved_scene(homogeneous(alike, false)), kSame);
 }
 
@@ -186,23 +186,23 @@ TEST(BondedLayer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
   for (const Coupling coupling : {Coupling::none, Coupling::pressure, Coupling::full}) {
     Scene scene = coated_scene(0.4, 2.0, 0.2);
     scene.upper.coating = coated_scene(0.1, 0.5).lower.coating;
-    scene.coupling = coupling;
-    scene.tolerance = 1e-12;
+    scene.contact.coupling = coupling;
+    scene.solver.tolerance = 1e-12;
     const Solution reference = solved_scene(scene);
     EXPECT_TRUE(0 < reference.stick_cells && reference.stick_cells < reference.contact_cells);
     const auto expect_same_with = [&](auto member, auto value, double tolerance) {
       Scene other = scene;
-      other.*member = value;
+      other.solver.*member = value;
       const Solution solution = solved_scene(other);
       expect_same(solution, reference, tolerance);
-      EXPECT_LE(solution.certificate.gap, scene.tolerance);
+      EXPECT_LE(solution.certificate.gap, scene.solver.tolerance);
       EXPECT_GE(solution.predicted_bytes, solution.bytes);
     };
-    expect_same_with(&Scene::model, ModelChoice::full, kSame);
-    expect_same_with(&Scene::op, OperatorKind::direct, kSame);
-    expect_same_with(&Scene::op, OperatorKind::dense, kSame);
-    expect_same_with(&Scene::threads, 3, 0.0);
-    expect_same_with(&Scene::method, Method::projected_gradient, 1e-5);
+    expect_same_with(&SolverSettings::model, ModelChoice::full, kSame);
+    expect_same_with(&SolverSettings::op, OperatorKind::direct, kSame);
+    expect_same_with(&SolverSettings::op, OperatorKind::dense, kSame);
+    expect_same_with(&SolverSettings::threads, 3, 0.0);
+    expect_same_with(&SolverSettings::method, Method::projected_gradient, 1e-5);
     std::swap(scene.lower, scene.upper);  // reverses all loads, and here nothing else
     scene.steps[0].torsion = MomentRatio{-0.6};
     EXPECT_NEAR(solved_scene(scene).twist_angle / reference.twist_angle, -1.0, kSame);
@@ -215,8 +215,8 @@ TEST(BondedLayer, NeedsNoExtent) {
        {std::array{0.02, 0.2, 0.5}, std::array{0.5, 0.1, 0.4}, std::array{0.3, 20.0, 0.0},
         std::array{1.0, 3.0, -0.5}}) {
     Scene scene = coated_scene(thickness, modulus, poisson_ratio);
-    scene.extent.reset();
-    scene.cells = {96, 96};
+    scene.grid.extent.reset();
+    scene.grid.cells = {96, 96};
     const auto radius = [](const Scene& solved) { return solved_scene(solved).contact_radius; };
     const auto [least, most] =
         std::minmax({radius(homogeneous(scene, false)), radius(homogeneous(scene, true))});

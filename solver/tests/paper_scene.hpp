@@ -42,10 +42,10 @@ inline Scene paper_scene(Index cells, double moment_ratio) {
   scene.source = "paper.toml";
   scene.surfaces.front().radius = paper::kRadius;
   scene.upper = scene.lower = steel;
-  scene.friction.coefficient = paper::kFriction;
+  scene.contact.friction.coefficient = paper::kFriction;
   scene.steps[0].normal = paper::kLoad;
   scene.steps[0].torsion = MomentRatio{moment_ratio};
-  scene.cells = {cells, cells};
+  scene.grid.cells = {cells, cells};
   return scene;
 }
 
@@ -60,7 +60,7 @@ inline Scene ellipsoid_scene(Index cells, double radius_1, double radius_2, doub
 
 /// The scene solved by the paper's method.
 inline ModelSolution by_paper_method(Scene scene) {
-  scene.method = Method::paper;
+  scene.solver.method = Method::paper;
   return solve_in_model_units(scene);
 }
 

@@ -93,9 +93,9 @@ TEST(InvalidReason, IsGivenForErrorsThatMeshAndToleranceDoNotExplain) {
     convergence::Errors errors = right;
     errors.traction.at_centres.l2 = traction;
     EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("traction error")) << traction;
-    scene.tolerance = 0.04;  // leaves 0.2 open
+    scene.solver.tolerance = 0.04;  // leaves 0.2 open
     EXPECT_EQ(bench::invalid_reason(scene, solution, errors).empty(), traction == 0.2);
-    scene.tolerance = 1e-8;
+    scene.solver.tolerance = 1e-8;
   }
 }
 

@@ -254,7 +254,7 @@ TEST_F(CheckBadField, NotJudged) {
   EXPECT_THROW(check_rows(with_tractions_times(rows_, 0.0), scene_), solver::InputError);
   EXPECT_THROW(check_rows(rows_, scene_of("torsion_and_force")), solver::InputError);
   solver::Scene frictionless = scene_;
-  frictionless.friction.coefficient = 0.0;
+  frictionless.contact.friction.coefficient = 0.0;
   EXPECT_THROW(check_rows(rows_, frictionless), solver::InputError);
 }
 

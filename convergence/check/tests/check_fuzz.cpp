@@ -12,10 +12,10 @@ slipstick::solver::Scene sphere() {
   slipstick::solver::Scene scene;
   scene.surfaces.front().radius = 0.018;
   scene.upper = scene.lower = {210e9, 0.3};
-  scene.friction.coefficient = 0.1;
+  scene.contact.friction.coefficient = 0.1;
   scene.steps.front().normal = 1000.0;
   scene.steps.front().torsion = slipstick::solver::MomentRatio{0.9};
-  scene.cells = {8, 8};
+  scene.grid.cells = {8, 8};
   return scene;
 }
 

@@ -62,7 +62,7 @@ TEST_F(CheckThreshold, OfTheContactRadiusIsOneCell) {
   const double cell = field.solution.grid.h1 / radius;
   for (const double times : {kBelow, kAbove, -kBelow, -kAbove}) {
     solver::Scene other = field.scene;
-    other.extent = {32.0 * field.solution.grid.h1, 32.0 * field.solution.grid.h2};
+    other.grid.extent = {32.0 * field.solution.grid.h1, 32.0 * field.solution.grid.h2};
     other.upper.young_modulus = other.lower.young_modulus *= std::pow(1.0 + times * cell, -3.0);
     const Json item = judgement(check_rows(solved(other), field.scene), "contact_radius_error");
     EXPECT_NEAR(item["allowed"].get<double>() / cell, 1.0, 1e-9);
@@ -74,7 +74,7 @@ TEST_F(CheckThreshold, OfTheContactRadiusIsOneCell) {
 FieldRows with_part(const RightField& field, double least, double most,
                     const std::function<void(FieldRow&)>& change) {
   return changed(field.rows, [&](FieldRow& row) {
-    const double part = std::hypot(row[3], row[4]) / (field.scene.friction.coefficient * row[2]);
+    const double part = std::hypot(row[3], row[4]) / (field.scene.contact.friction.coefficient * row[2]);
     if (part >= least && part <= most) change(row);
   });
 }
@@ -90,7 +90,7 @@ TEST_F(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
   const auto place = static_cast<std::size_t>(largest - field.rows.begin());
   for (const double times : {kBelow, kAbove}) {
     FieldRows rows = field.rows;
-    const double bound = field.scene.friction.coefficient * rows[place][2];
+    const double bound = field.scene.contact.friction.coefficient * rows[place][2];
     scale_tractions(rows[place], (1.0 + times * 1e-3) * bound / std::hypot(rows[place][3], rows[place][4]));
     const Json item = judgement(check_rows(rows, field.scene), "friction_bound");
     EXPECT_NEAR(item["value"].get<double>(), times * 1e-3, 1e-6);
@@ -252,7 +252,7 @@ TEST_F(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
   const solver::Step& load = scene.steps.front();
   const double missed_normal = std::abs(area * normal / *load.normal - 1.0);
   const double missed_force =
-      std::abs(area * force - e.exact.oracle->force[0]) / (scene.friction.coefficient * *load.normal);
+      std::abs(area * force - e.exact.oracle->force[0]) / (scene.contact.friction.coefficient * *load.normal);
   EXPECT_NEAR(e.reference.mesh.loads.normal / missed_normal, 1.0, 0.5);
   EXPECT_NEAR(e.reference.mesh.loads.force / missed_force, 1.0, 0.5);
 }

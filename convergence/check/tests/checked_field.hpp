@@ -156,7 +156,8 @@ inline std::string why(const Json& result) { return result["why"]; }
 inline Checked find_good(const FieldRows& rows, const solver::Scene& scene,
                          std::optional<double> twist = {}) {
   Checked result = check_rows(rows, scene, twist);
-  EXPECT_EQ(result["verdict"], "good") << scene.name << ", " << scene.cells[0] << " cells: " << why(result);
+  EXPECT_EQ(result["verdict"], "good")
+      << scene.name << ", " << scene.grid.cells[0] << " cells: " << why(result);
   return result;
 }
 

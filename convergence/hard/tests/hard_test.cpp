@@ -78,7 +78,7 @@ TEST(Variant, ComesBack) {
       EXPECT_EQ(seen.surfaces[0].at, scene.surfaces[0].at) << name;
       EXPECT_EQ(seen.steps[0].force, scene.steps[0].force) << name;
       EXPECT_EQ(seen.steps[0].displacement, scene.steps[0].displacement) << name;
-      EXPECT_EQ(seen.cells, scene.cells) << name;
+      EXPECT_EQ(seen.grid.cells, scene.grid.cells) << name;
       EXPECT_EQ(seen.upper.young_modulus, scene.upper.young_modulus) << name;
     }
   }
@@ -86,12 +86,12 @@ TEST(Variant, ComesBack) {
 
 TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
   solver::Scene scene = example("paper");
-  scene.cells = {64, 48};
-  scene.extent = {1.0e-3, 2.4e-3};
+  scene.grid.cells = {64, 48};
+  scene.grid.extent = {1.0e-3, 2.4e-3};
   const solver::Scene seen = transformed(scene, Variant::shifted);
   for (std::size_t i = 0; i < 2; ++i) {
-    const double cell = (*scene.extent)[i] / static_cast<double>(scene.cells[i]);
-    EXPECT_NEAR((*seen.extent)[i] / static_cast<double>(seen.cells[i]) / cell, 1.0, 1e-14);
+    const double cell = (*scene.grid.extent)[i] / static_cast<double>(scene.grid.cells[i]);
+    EXPECT_NEAR((*seen.grid.extent)[i] / static_cast<double>(seen.grid.cells[i]) / cell, 1.0, 1e-14);
     const double cells = (seen.surfaces[0].at[i] - scene.surfaces[0].at[i]) / cell;
     EXPECT_NEAR(cells, std::round(cells), 1e-12);
     EXPECT_GT(std::abs(cells), 0.5);
@@ -225,10 +225,10 @@ TEST_F(HardFile, ProgramComparesWithFinerMeshes) {
   std::vector<double> twists;
   solver::Scene scene = example("patches", {"grid.cells=[24,12]"});
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
-  scene.extent = {24.0 * grid.h1, 12.0 * grid.h2};
+  scene.grid.extent = {24.0 * grid.h1, 12.0 * grid.h2};
   for (const int finer : {1, 2, 4}) {
-    scene.cells = {24L * finer, 12L * finer};
-    scene.substeps = finer;
+    scene.grid.cells = {24L * finer, 12L * finer};
+    scene.solver.substeps = finer;
     twists.push_back(solver::solve(scene).twist_angle);
   }
   EXPECT_NEAR(row["finer_meshes.error"], std::abs(twists[0] / twists[2] - 1.0), 1e-7);

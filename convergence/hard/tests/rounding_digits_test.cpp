@@ -53,7 +53,7 @@ TEST(SurvivingDigits, IntervalHoldsTheTruthAsOftenAsItSays) {
 
 solver::Scene small_scene(std::int64_t seed) {
   solver::Scene scene = solver::read_scene(SLIPSTICK_SCENES "/paper.toml", {"grid.cells=[24,24]"});
-  scene.rounding_seed = seed;
+  scene.solver.rounding_seed = seed;
   return scene;
 }
 

@@ -76,7 +76,7 @@ TEST(CoatedOracle, CarriesItsLoads) {
 /// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells`
 /// cells.
 double largest_error(solver::Scene scene, int cells) {
-  scene.cells = {cells, cells};
+  scene.grid.cells = {cells, cells};
   const auto history = exact_history(scene);
   double largest = 0.0;
   double twist = 0.0;
@@ -108,7 +108,7 @@ TEST(CoatedOracle, SaysWhyItHasNoAnswer) {
     change(scene);
     return find_oracle(scene).reason;
   };
-  EXPECT_THAT(reason([](auto& scene) { scene.coupling = solver::Coupling::automatic; }),
+  EXPECT_THAT(reason([](auto& scene) { scene.contact.coupling = solver::Coupling::automatic; }),
               HasSubstr("contact.coupling"));
   EXPECT_THAT(reason([](auto& scene) { scene.steps.front().force = {1.0, 0.0}; }), HasSubstr("force"));
   EXPECT_THAT(reason([](auto& scene) { scene.surfaces.front().shape = solver::Shape::cone; }),

@@ -23,7 +23,7 @@ struct Compared {
 };
 
 Compared solve_scene(solver::Scene body, int cells) {
-  body.cells = {cells, cells};
+  body.grid.cells = {cells, cells};
   const solver::Solution solution = solver::solve(body);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
   return {solution, compare(solution, *find_oracle(body).oracle)};
@@ -171,10 +171,10 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
 /// means over three grids of nearly the same cells, which lie differently under the edge.
 Eigen::Array<double, 6, 1> mean_errors(solver::Scene body, solver::Index across) {
   const Oracle oracle = *find_oracle(body).oracle;
-  const solver::Index shape = body.cells[0] / body.cells[1];
+  const solver::Index shape = body.grid.cells[0] / body.grid.cells[1];
   Eigen::Array<double, 6, 1> sum = Eigen::Array<double, 6, 1>::Zero();
   for (const solver::Index cells : {across, across + across / 16, across + across / 8}) {
-    body.cells = {cells, cells / shape};
+    body.grid.cells = {cells, cells / shape};
     const solver::Solution solution = solver::solve(body);
     EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
     const Errors errors = compare(solution, oracle);

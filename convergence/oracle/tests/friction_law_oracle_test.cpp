@@ -32,7 +32,7 @@ const std::vector<FrictionLaw>& laws() {
 
 Scene under(const FrictionLaw& law, double moment_ratio, const std::string& body = "paper") {
   Scene scene = example(body);
-  scene.friction = law;
+  scene.contact.friction = law;
   scene.steps.front().torsion = solver::MomentRatio{moment_ratio};
   return scene;
 }
@@ -95,7 +95,7 @@ TEST(FrictionLawOracle, IsTheLimitOfTheSolver) {
   for (const FrictionLaw& law : laws()) {
     const auto error = [&](solver::Index cells) {
       Scene scene = under(law, 0.7);
-      scene.cells = {cells, cells};
+      scene.grid.cells = {cells, cells};
       return compare(solver::solve(scene), *find_oracle(scene).oracle);
     };
     const Errors coarse = error(32);
@@ -115,7 +115,7 @@ TEST(FrictionLawOracle, SaysWhereThereIsNone) {
   EXPECT_THAT(reason(under(law_of(FrictionKind::tresca), 0.5, "ellipse")),
               HasSubstr("friction_law = \"tresca\""));
   Scene mapped = under(0.1, 0.5);
-  mapped.friction.map = "map.csv";
+  mapped.contact.friction.map = "map.csv";
   EXPECT_THAT(reason(mapped), HasSubstr("contact.friction_map"));
   Scene force = without_contraction(under(law_of(FrictionKind::tresca), 0.0));
   force.steps.front().force = {10.0, 0.0};

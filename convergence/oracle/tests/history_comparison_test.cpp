@@ -40,7 +40,7 @@ std::vector<State> follow(const Scene& scene) {
 }
 
 Scene on_cells(Scene scene, Index cells) {
-  scene.cells = {cells, cells};
+  scene.grid.cells = {cells, cells};
   return scene;
 }
 
@@ -266,7 +266,7 @@ Solution twisted_and_pushed(double ratio, const std::array<double, 2>& force) {
   scene.steps.front().force = force;
   const Solution solution = solver::solve(scene);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-  EXPECT_LE(solution.certificate.gap, scene.tolerance);
+  EXPECT_LE(solution.certificate.gap, scene.solver.tolerance);
   EXPECT_LE(solution.certificate.moment, 1e-12);
   EXPECT_LE(solution.certificate.force, 1e-12);
   EXPECT_LE(solution.certificate.friction_bound, 1e-12);
@@ -299,7 +299,7 @@ TEST(HistoryComparison, ASmallForceBesideTorsion) {
 /// errors about the axis equal the errors of the centred body.
 TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
   Scene centred = on_cells(twisted(steel(), {0.8, -0.3}), 80);
-  centred.extent = {1.6e-3, 1.6e-3};  // 20 um a cell
+  centred.grid.extent = {1.6e-3, 1.6e-3};  // 20 um a cell
   Scene shifted = centred;
   shifted.surfaces.front().at = {8e-5, -1.2e-4};
   const std::vector<State> here = follow(centred);
@@ -324,8 +324,8 @@ TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
 Scene against_rigid(solver::Coupling coupling) {
   Scene scene = without_contraction(example("paper"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
-  scene.friction.coefficient = 0.2986;
-  scene.coupling = coupling;
+  scene.contact.friction.coefficient = 0.2986;
+  scene.contact.coupling = coupling;
   return twisted(scene, {0.0});
 }
 

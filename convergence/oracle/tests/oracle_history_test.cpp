@@ -79,7 +79,7 @@ TEST(OracleHistory, ASmallForceHasAllItsDigits) {
   for (const char* body : {"paper", "cone"}) {
     Scene scene = without_contraction(example(body));
     const double normal = *scene.steps.front().normal;
-    const double limit = scene.friction.coefficient * normal;
+    const double limit = scene.contact.friction.coefficient * normal;
     const auto under = [&](double force) {
       return oracles(pushed(scene, {{normal, force * limit}})).front();
     };
@@ -98,7 +98,7 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     Scene scene = without_contraction(example(body));
     const double normal = *scene.steps.front().normal;
-    const double friction = scene.friction.coefficient * normal;
+    const double friction = scene.contact.friction.coefficient * normal;
     scene = pushed(scene, {{normal, 0.8 * friction},
                            {1.5 * normal, 0.9 * friction},
                            {1.5 * normal, -1.2 * friction},
@@ -194,7 +194,7 @@ TEST(OracleHistory, AClosedCycleOfForceLosesItsLoop) {
 TEST(OracleHistory, OneBodyMayBeRigid) {
   Scene scene = without_contraction(example("paper"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
-  scene.coupling = solver::Coupling::none;
+  scene.contact.coupling = solver::Coupling::none;
   const double a = std::cbrt(0.75 * 1000.0 * 0.018 / 210e9);
   const double unit = 100.0 / (105e9 * a);  // mu W/(G a)
   const Oracle force = oracles(pushed(scene, {{1000.0, 50.0}})).front();
@@ -270,8 +270,8 @@ TEST(OracleHistory, SaysWhyNoTheoryHolds) {
 TEST(OracleHistory, PressingDissimilarBodiesSticksWithinTheSameRatio) {
   Scene scene = without_contraction(example("flat_punch"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
-  scene.friction.coefficient = 0.2986;
-  scene.coupling = solver::Coupling::full;
+  scene.contact.friction.coefficient = 0.2986;
+  scene.contact.coupling = solver::Coupling::full;
   scene = pushed(scene, {{1.0, 0.0}, {10.0, 0.0}, {1000.0, 0.0}});
   for (const Oracle& spence : oracles(scene)) {
     EXPECT_NEAR(spence.state.stick_ratio, 0.5, 5e-4);  // his three digits
@@ -280,7 +280,7 @@ TEST(OracleHistory, PressingDissimilarBodiesSticksWithinTheSameRatio) {
   std::swap(scene.upper, scene.lower);
   EXPECT_NEAR(oracles(scene).back().state.stick_ratio, 0.5, 5e-4);
   // Goodman's equation, artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)), beta = 1/2.
-  scene.coupling = solver::Coupling::pressure;
+  scene.contact.coupling = solver::Coupling::pressure;
   const double c = oracles(scene).back().state.stick_ratio;
   EXPECT_NEAR(std::atanh(c) / c, 2.0 * 0.2986 * std::comp_ellint_1(std::sqrt(1.0 - c * c)), 1e-9);
   scene.steps.back().normal = 5.0;  // no longer growing

@@ -19,7 +19,7 @@ using solver::Index;
 constexpr std::size_t kMaxTable = 256;
 
 void make_small(solver::Scene& scene) {
-  for (Index& cells : scene.cells) cells = std::min<Index>(cells, 6);
+  for (Index& cells : scene.grid.cells) cells = std::min<Index>(cells, 6);
   if (scene.steps.size() > 3) scene.steps.resize(3);
   scene.cycles = std::min(scene.cycles, 2);
   if (scene.surfaces.size() > 3) scene.surfaces.resize(3);
@@ -27,13 +27,13 @@ void make_small(solver::Scene& scene) {
     solver::Roughness& waves = surface.roughness;
     waves.shortest = std::max(waves.shortest, std::min(waves.period / 32.0, waves.longest / 2.0));
   }
-  scene.tolerance = std::max(scene.tolerance, 1e-6);
-  scene.max_iterations = std::min(scene.max_iterations, 200);
-  scene.threads = 1;
+  scene.solver.tolerance = std::max(scene.solver.tolerance, 1e-6);
+  scene.solver.max_iterations = std::min(scene.solver.max_iterations, 200);
+  scene.solver.threads = 1;
 }
 
 void answer(const solver::Scene& scene) {
-  if (scene.model == solver::ModelChoice::exact) {
+  if (scene.solver.model == solver::ModelChoice::exact) {
     const convergence::Oracle oracle = convergence::require_oracle(scene);
     convergence::solve_text(convergence::exact_record(scene, oracle, 0.0));
     return;

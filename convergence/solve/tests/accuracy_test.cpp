@@ -139,7 +139,7 @@ TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
 // The grid stands in a file.
 TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
   solver::Scene at = example("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
-  at.pressure = solver::PressureModel::file;
+  at.contact.pressure = solver::PressureModel::file;
   at.steps.front().normal.reset();
   const ContactOnGrid contact = contact_on_grid(at);
   EXPECT_DOUBLE_EQ(cells_across(contact, 24), contact.cells_across);
@@ -182,8 +182,8 @@ solver::Scene punch() { return example("flat_punch"); }
 SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
   SolvedScene answer;
   answer.solution.status = solver::Status::converged;
-  const auto cells = static_cast<double>(at.cells[0]);
-  answer.result = {{"cells", at.cells}, {"twist_error", -constant * std::pow(cells, -order)}};
+  const auto cells = static_cast<double>(at.grid.cells[0]);
+  answer.result = {{"cells", at.grid.cells}, {"twist_error", -constant * std::pow(cells, -order)}};
   return answer;
 }
 

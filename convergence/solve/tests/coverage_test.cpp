@@ -38,7 +38,7 @@ class RandomScenes {
     if (uniform(0.0, 1.0) < 0.5) {
       const solver::Grid grid = solver::make_model(scene).grid_in_m();
       const double side = uniform(1.0, 1.3) * grid.h1 * static_cast<double>(grid.n1);
-      scene.extent = {side, side};
+      scene.grid.extent = {side, side};
     }
     return scene;
   }

@@ -26,8 +26,8 @@ struct TwoMeshes {
   TwoMeshes(const std::string& name, const std::string& load, double factor)
       : scene(example(name, {"grid.cells=[48,48]", load})), fine(solver::solve(scene)) {
     solver::Scene half = scene;
-    half.cells = {24, 24};
-    half.extent = {48.0 * fine.grid.h1, 48.0 * fine.grid.h2};
+    half.grid.cells = {24, 24};
+    half.grid.extent = {48.0 * fine.grid.h1, 48.0 * fine.grid.h2};
     const solver::Solution coarse = solver::solve(half);
     fine.twist_angle = factor * coarse.twist_angle;
     fine.moment = factor * coarse.moment;

@@ -105,7 +105,7 @@ TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
     settings.push_back(fmt::format("load.moment_ratio={}", ratio));
     Scene scene = scene_of(GetParam().body, 24 + static_cast<int>(40.0 * part(random)), settings);
     const double extent = 2.0 * find_oracle(scene).oracle->contact_radius * (1.05 + 0.55 * part(random));
-    scene.extent = {extent, extent};
+    scene.grid.extent = {extent, extent};
     const Json json = solve_scene(scene).result;
     ASSERT_EQ(json["status"], "converged");
     if (!is_covered(json, "twist_error")) ++twists;
@@ -124,7 +124,7 @@ TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
 TEST(StatedOfTheTwist, CoversAGridOfItsOwnExtent) {
   Scene scene = scene_of("paper", 96, {"load.moment_ratio=0.00198802"});
   scene.upper.young_modulus = scene.lower.young_modulus = 200e9;
-  scene.extent = {1.374288846263151e-3, 1.374288846263151e-3};
+  scene.grid.extent = {1.374288846263151e-3, 1.374288846263151e-3};
   expect_covered(solve_scene(scene).result, "twist_error");
 }
 

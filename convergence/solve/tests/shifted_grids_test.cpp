@@ -27,7 +27,7 @@ struct Staircase {
     answer.solution.status = solver::Status::converged;
     answer.solution.resolution.stick_width = 50.0;
     answer.solution.resolution.slip_width = 20.0;
-    const double cells = front * static_cast<double>(at.cells[0]) / (*at.extent)[0];
+    const double cells = front * static_cast<double>(at.grid.cells[0]) / (*at.grid.extent)[0];
     phases.push_back(cells - std::floor(cells));
     const double error = height * std::sin(2.0 * M_PI * cells);
     answer.result = {{"twist_angle", 2.0 * (1.0 + error)}, {"twist_error", error}, {"twist", 1.0 + error}};
@@ -158,12 +158,12 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
       solver::Scene scene = example("ellipse", {fmt::format("load.moment_ratio={}", ratio)});
       scene.surfaces[0].radius_1 = 0.3;
       scene.surfaces[0].radius_2 = radius;
-      scene.cells = {64, 64};
+      scene.grid.cells = {64, 64};
       const AccurateAnswer found = solve_to_accuracy(scene, {kWanted}, solve);
       ASSERT_TRUE(found.reached) << radius << ", " << ratio;
       solver::Scene fine = with_cells(scene, 4 * found.answer.result["cells"][0].get<int>());
-      fine.cell_traction = solver::CellTraction::smooth;
-      fine.substeps = found.accuracy["substeps"];
+      fine.solver.cell_traction = solver::CellTraction::smooth;
+      fine.solver.substeps = found.accuracy["substeps"];
       const double value = found.answer.result["twist_angle"];
       const double error = std::abs(value / solver::solve(fine).twist_angle - 1.0);
       EXPECT_LE(error, kWanted);

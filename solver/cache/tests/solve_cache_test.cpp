@@ -20,17 +20,17 @@ std::vector<Scene> scenes_that_share() {
   std::vector<Scene> scenes{paper, paper_scene(24, 0.9), paper_scene(20, 0.6),
                             ellipsoid_scene(24, 0.02, 0.01, 0.5)};
   scenes.insert(scenes.end(), 9, paper);
-  scenes[4].cell_traction = CellTraction::smooth;
-  scenes[5].op = OperatorKind::direct;
-  scenes[6].method = Method::paper;
-  scenes[7].model = ModelChoice::full;
+  scenes[4].solver.cell_traction = CellTraction::smooth;
+  scenes[5].solver.op = OperatorKind::direct;
+  scenes[6].solver.method = Method::paper;
+  scenes[7].solver.model = ModelChoice::full;
   scenes[8].lower.poisson_ratio = 0.1;
-  scenes[8].coupling = Coupling::full;
+  scenes[8].contact.coupling = Coupling::full;
   scenes[9].steps.push_back(scenes[9].steps[0]);
   scenes[9].steps[1].torsion = MomentRatio{-0.5};
   scenes[10].steps[0].normal = 700.0;
-  scenes[11].tolerance = 1e-12;
-  scenes[12].rounding_seed = 3;
+  scenes[11].solver.tolerance = 1e-12;
+  scenes[12].solver.rounding_seed = 3;
   return scenes;
 }
 

@@ -87,8 +87,8 @@ TEST(CouplingKernel, IsOddAndDrawsInwards) {
 Scene loaded(Coupling coupling, Index cells = 20) {
   Scene scene = paper_scene(cells, 0.5);
   scene.steps[0].force = {40.0, 20.0};
-  scene.tolerance = kGap;
-  scene.coupling = coupling;
+  scene.solver.tolerance = kGap;
+  scene.contact.coupling = coupling;
   return scene;
 }
 
@@ -100,10 +100,10 @@ TEST(NoMismatch, UncouplesEveryModel) {
       scene.lower = {2.0 * 80e9 * 1.3, 0.3};
       scene.upper = {2.0 * 100e9 * 1.25, 0.25};
     }
-    scene.coupling = Coupling::none;
+    scene.contact.coupling = Coupling::none;
     const ModelSolution none = solved(scene);
     for (const Coupling coupling : {Coupling::automatic, Coupling::pressure, Coupling::full}) {
-      scene.coupling = coupling;
+      scene.contact.coupling = coupling;
       const ModelSolution other = solved(scene);
       EXPECT_LE(relative_difference(other.normal.pressure, none.normal.pressure), kSame);
       EXPECT_LE(relative_difference(other.tangential.traction, none.tangential.traction), kSame);
@@ -120,10 +120,10 @@ Scene dissimilar(Coupling coupling, double moment_ratio, Index cells = 24) {
   Scene scene = paper_scene(cells, moment_ratio);
   scene.lower.poisson_ratio = 0.1;
   scene.upper.young_modulus = kInfinity;
-  scene.extent = {1.2e-3, 1.2e-3};
-  scene.friction.coefficient = 0.3;
-  scene.tolerance = kGap;
-  scene.coupling = coupling;
+  scene.grid.extent = {1.2e-3, 1.2e-3};
+  scene.contact.friction.coefficient = 0.3;
+  scene.solver.tolerance = kGap;
+  scene.contact.coupling = coupling;
   return scene;
 }
 
@@ -178,7 +178,7 @@ TEST_P(Exchange, MirrorsTheAnswerToAMoment) {
 TEST(FullCoupling, HoldsBothLawsAtOnce) {
   for (const double tolerance : {1e-8, 1e-12}) {
     Scene scene = dissimilar(Coupling::full, 0.4);
-    scene.tolerance = tolerance;
+    scene.solver.tolerance = tolerance;
     scene.steps[0].force = {30.0, 10.0};
     const ModelSolution solution = solved(scene);
     const Model& model = solution.model;
@@ -219,12 +219,12 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
 TEST(FullCoupling, OfAFewCellsHasTheSameApproachInItsNextStep) {
   for (const auto& [load, extent] : {std::pair{1e-3, 3e-4}, {0.1, 5e-4}, {3.0, 1e-3}}) {
     Scene scene = paper_scene(16, 0.5);
-    scene.cells = {16, 15};
-    scene.extent = {extent, extent};
+    scene.grid.cells = {16, 15};
+    scene.grid.extent = {extent, extent};
     scene.lower = {10e9, 0.1};
-    scene.friction = 0.3;
-    scene.coupling = Coupling::full;
-    scene.tolerance = 1e-12;
+    scene.contact.friction = 0.3;
+    scene.contact.coupling = Coupling::full;
+    scene.solver.tolerance = 1e-12;
     scene.steps[0].normal = load;
     scene.steps.push_back(scene.steps.front());
     std::vector<double> approach;
@@ -239,9 +239,9 @@ TEST(FullCoupling, OfAFewCellsHasTheSameApproachInItsNextStep) {
 TEST(FullCoupling, UnderAStrengthSaysThatCellsComeAndGo) {
   Scene scene = paper_scene(24, 0.5);
   scene.lower = {10e9, 0.1};
-  scene.friction.kind = FrictionKind::tresca;
-  scene.friction.shear_strength = 1e9;
-  scene.coupling = Coupling::full;
+  scene.contact.friction.kind = FrictionKind::tresca;
+  scene.contact.friction.shear_strength = 1e9;
+  scene.contact.coupling = Coupling::full;
   const ModelSolution solution = solve_in_model_units(scene);
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_THAT(solution.message, testing::HasSubstr("cells at the edge come into contact and leave it again"));
@@ -254,9 +254,9 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
     for (const double push : {0.0, 0.9, 0.99}) {
       Scene scene = dissimilar(Coupling::full, 0.0, 16);
       scene.lower.poisson_ratio = 0.0;
-      scene.friction.coefficient = friction;
+      scene.contact.friction.coefficient = friction;
       scene.ends_at_grid_edge = true;  // much friction drags the contact there
-      scene.tolerance = 1e-8;
+      scene.solver.tolerance = 1e-8;
       scene.steps[0].torsion = Twist{0.0};
       scene.steps[0].force = {push * friction * paper::kLoad, 0.0};
       const ModelSolution solution = solve_in_model_units(scene);
@@ -279,9 +279,9 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
   scene.surfaces[0].radius = shape == Shape::sphere ? 100.0 : 1.0;
   scene.lower = kSpences;
   scene.upper = kRigid;
-  scene.friction.coefficient = 0.2986;
-  scene.coupling = coupling;
-  scene.cells = {cells, cells};
+  scene.contact.friction.coefficient = 0.2986;
+  scene.contact.coupling = coupling;
+  scene.grid.cells = {cells, cells};
   scene.steps[0].normal = 0.02;
   scene.steps[0].torsion = MomentRatio{0.0};
   return scene;
@@ -330,7 +330,7 @@ TEST(SpenceScenes, CostFewApplications) {
 /// load.
 double late_stick_ratio(Coupling coupling, Index cells, int steps) {
   Scene scene = spence(Shape::sphere, coupling, cells);
-  scene.tolerance = 1e-6;
+  scene.solver.tolerance = 1e-6;
   const double load = *scene.steps[0].normal;
   scene.steps.resize(static_cast<std::size_t>(steps) + 1, scene.steps[0]);
   for (int i = 0; i <= steps; ++i) {
@@ -368,10 +368,10 @@ TEST(BondedPunch, IsStifferByTheLogarithmOfThree) {
   std::vector<double> errors;
   for (const Index cells : {20, 36}) {  // 8 and 16 cells in a radius
     Scene scene = spence(Shape::flat_punch, Coupling::full, cells);
-    scene.friction.coefficient = 3.0;
+    scene.contact.friction.coefficient = 3.0;
     const ModelSolution bonded = solved(scene);
     EXPECT_EQ(bonded.stick_cells, bonded.contact_cells);
-    scene.coupling = Coupling::none;
+    scene.contact.coupling = Coupling::none;
     errors.push_back(solved(scene).approach / (std::log(3.0) * bonded.approach) - 1.0);
   }
   EXPECT_LT(std::abs(errors[1]), 4e-3);

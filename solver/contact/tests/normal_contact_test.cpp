@@ -77,15 +77,15 @@ TEST_F(HeightMap, OfASphereGivesTheSpheresPressure) {
     }
   }
   Scene scene = sphere;
-  scene.surfaces.front() = {.shape = Shape::height_map,
-                            .file = file_,
-                            .spacing = {expected.model.length_unit, expected.model.length_unit * grid.h2}};
+  scene.surfaces.front() = {
+      .shape = Shape::height_map,
+      .map = {.file = file_, .spacing = {expected.model.length_unit, expected.model.length_unit * grid.h2}}};
   const Contact contact = press(scene);
   // The heights have lost 7e-5/1e-5 eps, and the two solves stop at their own iterates within a gap of 1e-10.
   EXPECT_LT((contact.solution.pressure - expected.solution.pressure).abs().maxCoeff(),
             1e-9 * expected.solution.pressure.maxCoeff());
   EXPECT_EQ(contact.model.grid.n1, 40);
-  scene.cells = {39, 40};
+  scene.grid.cells = {39, 40};
   EXPECT_THROW(make_model(scene), std::invalid_argument);
 }
 
@@ -123,7 +123,7 @@ TEST(Operators, GiveTheSamePressure) {
   Scene scene = ellipsoid_scene(24, 0.03, 0.01, 0.5);
   const ArrayXd reference = press(scene).solution.pressure;
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
-    scene.op = kind;
+    scene.solver.op = kind;
     EXPECT_LT((press(scene).solution.pressure - reference).abs().maxCoeff(), 1e-9 * reference.maxCoeff());
   }
 }

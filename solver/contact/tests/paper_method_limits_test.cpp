@@ -37,7 +37,7 @@ TEST(Unloaded, HasNoTraction) {
     }
   }
   Scene frictionless = paper_scene(16, 0.0);
-  frictionless.friction.coefficient = 0.0;
+  frictionless.contact.friction.coefficient = 0.0;
   EXPECT_EQ(by_paper_method(frictionless).status, Status::converged);
   EXPECT_EQ(by_paper_method(frictionless).moment, 0.0);
 }
@@ -182,10 +182,10 @@ TEST(BadTangentialProblem, ThrowsForGrossSlipAndSaysTheLimit) {
 
 Scene off_centre(Method method, std::array<double, 2> at) {
   Scene scene = paper_scene(17, 0.5);
-  scene.cells = {17, 13};
-  scene.extent = {1.2e-3, 1.2e-3};
+  scene.grid.cells = {17, 13};
+  scene.grid.extent = {1.2e-3, 1.2e-3};
   scene.surfaces.front().at = at;
-  scene.method = method;
+  scene.solver.method = method;
   return scene;
 }
 
@@ -215,8 +215,8 @@ class LopsidedPressure : public SceneFile {
     text.erase(text.find("normal = 1000\n"), 14);
     Scene scene = read(text, {"contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[16, 16]",
                               "grid.extent=[0.0016, 0.0016]", "load.moment_ratio=0.7"});
-    scene.method = method;
-    scene.tolerance = tolerance;
+    scene.solver.method = method;
+    scene.solver.tolerance = tolerance;
     return scene;
   }
 };
@@ -258,7 +258,7 @@ TEST(LooseTolerance, HoldsTheFrictionBoundAsWell) {
   for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
     for (const double ratio : {0.5, 0.9, 0.99}) {
       for (Scene scene : {paper_scene(64, ratio), ellipsoid_scene(64, 0.018, 0.0063, ratio)}) {
-        scene.tolerance = tolerance;
+        scene.solver.tolerance = tolerance;
         const ModelSolution solution = by_paper_method(scene);
         EXPECT_EQ(solution.status, Status::converged) << solution.message;
         EXPECT_LE(solution.certificate.friction_bound, tolerance) << ratio;

@@ -198,7 +198,7 @@ TEST(FrozenSlipDirection, ShowsOnAnEllipseInTheCertificateAlone) {
 
 TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   Scene scene = paper_scene(32, 0.5);
-  scene.friction.coefficient = 0.3;
+  scene.contact.friction.coefficient = 0.3;
   scene.lower.young_modulus = 150e9;
   const ModelSolution solution = by_paper_method(scene);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
@@ -217,14 +217,14 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
     return std::abs(radial.sum()) / around.sum();
   };
   EXPECT_GT(radial_part(solution), 1e-2);
-  scene.coupling = Coupling::none;
+  scene.contact.coupling = Coupling::none;
   EXPECT_LT(radial_part(by_paper_method(scene)), 1e-8);
 }
 
 /// The exact twist depends only on the combined G.
 TEST(DissimilarMaterials, OfOneCombinedModulusTurnAlike) {
   Scene scene = paper_scene(128, 0.5);
-  scene.coupling = Coupling::none;
+  scene.contact.coupling = Coupling::none;
   scene.upper = {250e9, 0.25};
   scene.lower = {100e9, 0.4};
   const ModelSolution solution = by_paper_method(scene);

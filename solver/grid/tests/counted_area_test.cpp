@@ -39,7 +39,7 @@ TEST(CountedArea, CoversExactAreasOfSpheres) {
   for (int k = 0; k < kDraws; ++k) {
     Scene scene = paper_scene(64, 0.5);
     const double size = 64.0 * 2.0 * paper::kContactRadius / across(random);
-    scene.extent = {size, size};
+    scene.grid.extent = {size, size};
     const Solution solution = solve(scene);
     for (const auto& [area, ratio] :
          {std::pair{solution.contact_area, 1.0}, std::pair{solution.stick_area, kStickRatio}}) {

@@ -44,15 +44,15 @@ class Pushed : public testing::Test {
     surface.radius_2 = 0.7 * paper::kRadius;
     surface.angle = 0.5;
     scene_.upper.poisson_ratio = scene_.lower.poisson_ratio = 0.0;
-    scene_.extent = {1.8e-3, 1.8e-3};
-    scene_.tolerance = kGap;
+    scene_.grid.extent = {1.8e-3, 1.8e-3};
+    scene_.solver.tolerance = kGap;
   }
 
   /// Steps to parts of the load W and of the force mu W.
   void take_steps(const std::vector<Part>& parts) {
     scene_.steps.clear();
     for (const Part& part : parts) {
-      const double size = part.force * scene_.friction.coefficient * paper::kLoad;
+      const double size = part.force * scene_.contact.friction.coefficient * paper::kLoad;
       Step& step = scene_.steps.emplace_back();
       step.name = step.key = "step " + std::to_string(scene_.steps.size());
       step.normal = part.normal * paper::kLoad;
@@ -63,12 +63,12 @@ class Pushed : public testing::Test {
 
   /// mu p under a part of W, along the force.
   ArrayXd carried(double normal) const {
-    const Index cells = scene_.cells[0] * scene_.cells[1];
+    const Index cells = scene_.grid.cells[0] * scene_.grid.cells[1];
     if (normal == 0.0) return ArrayXd::Zero(2 * cells);
     Scene scene = scene_;
     scene.steps = {Step{}};
     scene.steps[0].normal = normal * paper::kLoad;
-    const ArrayXd bound = scene.friction.coefficient * press(scene).solution.pressure;
+    const ArrayXd bound = scene.contact.friction.coefficient * press(scene).solution.pressure;
     ArrayXd q(2 * cells);
     q << 0.6 * bound, 0.8 * bound;
     return q;
@@ -150,7 +150,7 @@ TEST_F(Pushed, SlidesWhenTheLoadHasFallenTooFar) {
 /// Cells across the contact; ends of the steps over the limit moment.
 Scene twisted(Index cells, const std::vector<double>& moment_ratios) {
   Scene scene = paper_scene(cells, 0.0);
-  scene.tolerance = kGap;
+  scene.solver.tolerance = kGap;
   scene.steps.clear();
   for (const double ratio : moment_ratios) {
     Step& step = scene.steps.emplace_back();
@@ -180,7 +180,7 @@ TEST(Step, IsTheSameOnTheReducedGrid) {
   const std::array<double, 4> loads{0.5, 1.0, 0.4, 0.8};
   for (std::size_t k = 0; k < loads.size(); ++k) *scene.steps[k].normal *= loads[k];
   const auto reduced = history(scene);
-  scene.model = ModelChoice::full;
+  scene.solver.model = ModelChoice::full;
   const auto full = history(scene);
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const ModelSolution& other = full[k];
@@ -212,7 +212,7 @@ TEST(StickRadius, IsThatOfThePath) {
 TEST(Torsion, ReturnsToTheSameLoopAThousandTimes) {
   Scene scene = twisted(14, {0.8, -0.8});
   scene.cycles = 500;
-  scene.tolerance = 1e-10;
+  scene.solver.tolerance = 1e-10;
   std::vector<std::array<double, 2>> twists;
   std::vector<double> dissipated;
   const ModelSolution last = solve_in_model_units(scene, [&](const ModelSolution& step) {

@@ -29,7 +29,7 @@ class LoadParts : public SceneFile {
 
 TEST_F(LoadParts, PartsEndWithTheStepAndGoStraightToIt) {
   Scene scene;
-  scene.substeps = 4;
+  scene.solver.substeps = 4;
   const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
   Step step = before;
   step.torsion = Moment{0.03};
@@ -49,7 +49,7 @@ TEST_F(LoadParts, PartsEndWithTheStepAndGoStraightToIt) {
 
 TEST_F(LoadParts, TheNormalLoadComesFirstWhileTheOthersStay) {
   Scene scene;
-  scene.substeps = 4;
+  scene.solver.substeps = 4;
   const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
   Step step = before;
   step.normal = 800.0;

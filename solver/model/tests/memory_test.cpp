@@ -57,9 +57,9 @@ TEST_F(SceneFile, MayTakeAllOfItsMemoryLimitAndNoMore) {
   Scene scene = read(kShortScene);
   const double needed =
       predicted_memory(scene, make_model(scene), {.pressure = 0.0, .tractions = 0.0}).total();
-  scene.memory_limit = 1.001 * needed;
+  scene.solver.memory_limit = 1.001 * needed;
   EXPECT_EQ(make_model(scene).grid.n1, 32);
-  scene.memory_limit = 0.999 * needed;
+  scene.solver.memory_limit = 0.999 * needed;
   EXPECT_THAT(complaint([&] { make_model(scene); }),
               AllOf(HasSubstr("scene.toml"), HasSubstr("grid.cells = [32, 32]"),
                     HasSubstr(bytes_text(needed)), HasSubstr("--memory-limit"), HasSubstr("fewer cells")));
@@ -71,7 +71,7 @@ TEST_F(SceneFile, NamesNoTableThatDoesNotFitInMemory) {
                "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 1e-5]\n");
   Scene scene = read(text.substr(0, text.find("[grid]")));
   fs::resize_file(write("heights.csv", ""), 512U << 20);  // takes no room on the disk
-  scene.memory_limit = 100e6;
+  scene.solver.memory_limit = 100e6;
   EXPECT_THAT(complaint([&] { make_model(scene); }),
               AllOf(HasSubstr("heights.csv"), HasSubstr("512 MiB"), HasSubstr("95.4 MiB")));
 }

@@ -171,8 +171,8 @@ static_assert(!std::is_constructible_v<LengthUnit, double>);
 TEST(Model, HasThreadsThatAreWorthTheirCells) {
   const auto threads = [](Index cells, ModelChoice choice, int asked) {
     Scene scene = paper_scene(cells, 0.5);
-    scene.model = choice;
-    scene.threads = asked;
+    scene.solver.model = choice;
+    scene.solver.threads = asked;
     return make_model(scene).threads;
   };
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -35,7 +35,7 @@ std::vector<std::string> left_out(const ModelSolution& solution) {
 }
 
 ModelSolution solve_full(Scene scene) {
-  scene.model = ModelChoice::full;
+  scene.solver.model = ModelChoice::full;
   return solve_in_model_units(scene);
 }
 
@@ -105,12 +105,12 @@ Scene with(Scene scene, const std::function<void(Scene&)>& change) {
 }
 
 Scene with_cells(Scene scene, Index n1, Index n2) {
-  scene.cells = {n1, n2};
+  scene.grid.cells = {n1, n2};
   return scene;
 }
 
 Scene with_extent(Scene scene, double side) {
-  scene.extent = {side, side};
+  scene.grid.extent = {side, side};
   return scene;
 }
 
@@ -119,7 +119,7 @@ std::vector<Case> cases() {
   const Scene sphere = paper_scene(32, 0.5);
   const Scene ellipsoid = ellipsoid_scene(32, 0.036, 0.018, 0.5);
   const auto imposed_twist = [](Scene& scene) { scene.steps[0].torsion = Twist{1e-3}; };
-  const auto hertz_averaged = [](Scene& scene) { scene.pressure = PressureModel::hertz_averaged; };
+  const auto hertz_averaged = [](Scene& scene) { scene.contact.pressure = PressureModel::hertz_averaged; };
   // Slips from its rim where the moment is above 0.85 of the limit.
   Scene punch = paper_scene(32, 0.95);
   punch.surfaces.front().shape = Shape::flat_punch;
@@ -138,7 +138,7 @@ std::vector<Case> cases() {
        with(sphere,
             [](Scene& scene) {
               scene.lower.young_modulus = 70e9;
-              scene.coupling = Coupling::none;
+              scene.contact.coupling = Coupling::none;
             }),
        true, true},
       {"ellipsoid_oblong_cells", ellipsoid, true, false},
@@ -146,12 +146,12 @@ std::vector<Case> cases() {
       {"ellipsoid_under_twist", with(ellipsoid, imposed_twist), true, false},
       {"hertz_averaged", with(sphere, hertz_averaged), true, true},
       {"ellipsoid_hertz_averaged", with(ellipsoid, hertz_averaged), true, false},
-      {"hertz_at_centres", with(sphere, [](Scene& scene) { scene.pressure = PressureModel::hertz; }), true,
-       true},
-      {"smooth_cells", with(sphere, [](Scene& scene) { scene.cell_traction = CellTraction::smooth; }), true,
-       true},
+      {"hertz_at_centres", with(sphere, [](Scene& scene) { scene.contact.pressure = PressureModel::hertz; }),
+       true, true},
+      {"smooth_cells", with(sphere, [](Scene& scene) { scene.solver.cell_traction = CellTraction::smooth; }),
+       true, true},
       {"punch", punch, true, true}};
-  for (Case& each : list) each.scene.tolerance = 1e-12;
+  for (Case& each : list) each.scene.solver.tolerance = 1e-12;
   return list;
 }
 
@@ -201,7 +201,7 @@ TEST_P(ReducedModel, NamesWhatItLeavesOut) {
   if (tested.diagonal) expected.emplace_back(kDiagonal);
   EXPECT_EQ(left_out(reduced), expected);
   EXPECT_EQ(reduced.model.pressure_part.quadrant(),
-            tested.scene.cells[0] % 2 + tested.scene.cells[1] % 2 == 0);
+            tested.scene.grid.cells[0] % 2 + tested.scene.grid.cells[1] % 2 == 0);
   // The solve took the part that is named.
   const auto [n1, n2] = contact_sides(reduced);
   const Index images = tested.quadrant ? 2 : 1;
@@ -213,29 +213,29 @@ TEST_P(ReducedModel, FullLeavesOutNothingThatTheSceneAllows) {
   const Scene& scene = GetParam().scene;
   const ModelSolution full = solve_full(scene);
   std::vector<std::string> expected;
-  if (scene.coupling == Coupling::none) {
+  if (scene.contact.coupling == Coupling::none) {
     expected.emplace_back(kCoupling);
   } else if (coupled()) {
     expected.emplace_back(kShearCoupling);
   }
   EXPECT_EQ(left_out(full), expected);
-  EXPECT_EQ(full.tangential.grids.back().n1, scene.cells[0]);
-  EXPECT_EQ(full.tangential.grids.back().n2, scene.cells[1]);
+  EXPECT_EQ(full.tangential.grids.back().n1, scene.grid.cells[0]);
+  EXPECT_EQ(full.tangential.grids.back().n2, scene.grid.cells[1]);
 }
 
 TEST_P(ReducedModel, HoldsItsCertificateOnTheWholeGrid) {
   const Scene& scene = GetParam().scene;
   const ModelSolution reduced = solve_in_model_units(scene);
-  expect_certificate(reduced.certificate, scene.tolerance);
-  expect_certificate(recomputed(scene, reduced, OperatorKind::dcfft), scene.tolerance);
+  expect_certificate(reduced.certificate, scene.solver.tolerance);
+  expect_certificate(recomputed(scene, reduced, OperatorKind::dcfft), scene.solver.tolerance);
 }
 
 /// Whatever part of the grid was solved, the result is held to the same tolerance, by plain sums.
 TEST(ReducedModelCertificate, HoldsByPlainSums) {
   for (const bool full : {false, true}) {
     Scene scene = ellipsoid_scene(28, 0.03, 0.015, 0.6);
-    scene.model = full ? ModelChoice::full : ModelChoice::automatic;
-    scene.tolerance = 1e-10;
+    scene.solver.model = full ? ModelChoice::full : ModelChoice::automatic;
+    scene.solver.tolerance = 1e-10;
     const ModelSolution solution = solve_in_model_units(scene);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     expect_certificate(recomputed(scene, solution, OperatorKind::direct), 1e-10);
@@ -255,14 +255,14 @@ TEST(ReducedModelCertificate, HoldsByPlainSums) {
 /// tolerances, and break Coulomb's law alike.
 TEST(PapersMethod, AgreesToItsTolerance) {
   for (Scene scene : {paper_scene(32, 0.5), ellipsoid_scene(32, 0.036, 0.018, 0.5), paper_scene(27, 0.7)}) {
-    scene.method = Method::paper;
-    scene.tolerance = 1e-10;
+    scene.solver.method = Method::paper;
+    scene.solver.tolerance = 1e-10;
     const ModelSolution full = solve_full(scene);
     const ModelSolution reduced = solve_in_model_units(scene);
     ASSERT_TRUE(full.status == Status::converged && reduced.status == Status::converged);
     EXPECT_LE(relative_difference(reduced.tangential.traction, full.tangential.traction),
-              100.0 * scene.tolerance);
-    EXPECT_NEAR(reduced.twist_angle / full.twist_angle, 1.0, 100.0 * scene.tolerance);
+              100.0 * scene.solver.tolerance);
+    EXPECT_NEAR(reduced.twist_angle / full.twist_angle, 1.0, 100.0 * scene.solver.tolerance);
     EXPECT_NEAR(reduced.certificate.gap / full.certificate.gap, 1.0, 1e-3);
     EXPECT_TRUE((reduced.tangential.stick == full.tangential.stick).all());
     EXPECT_THAT(left_out(full), ElementsAre(kTranslations));
@@ -274,7 +274,7 @@ TEST(PapersMethod, AgreesToItsTolerance) {
 TEST(DirectAndDense, LeaveNoCellsOut) {
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
     Scene scene = paper_scene(12, 0.5);
-    scene.op = kind;
+    scene.solver.op = kind;
     const ModelSolution solution = solve_in_model_units(scene);
     EXPECT_THAT(left_out(solution), ElementsAre(kCoupling, kTranslations));
     EXPECT_EQ(solution.tangential.grids.back().n1, 12);
@@ -302,10 +302,10 @@ class HeightMapSymmetry : public SceneFile {
       text << '\n';
     }
     Scene scene = paper_scene(0, 0.5);
-    scene.cells = {n1, n2};
-    scene.surfaces.front() = {
-        .shape = Shape::height_map, .file = write("heights.csv", text.str()), .spacing = {5e-5, 5e-5}};
-    scene.tolerance = 1e-12;
+    scene.grid.cells = {n1, n2};
+    scene.surfaces.front() = {.shape = Shape::height_map,
+                              .map = {.file = write("heights.csv", text.str()), .spacing = {5e-5, 5e-5}}};
+    scene.solver.tolerance = 1e-12;
     const ModelSolution reduced = solve_in_model_units(scene);
     const ModelSolution full = solve_full(scene);
     EXPECT_EQ(reduced.status, Status::converged) << reduced.message;
@@ -348,15 +348,15 @@ TEST_F(HeightMapSymmetry, LeavesNoForceWithoutTranslations) {
       text << '\n';
     }
     Scene scene = paper_scene(0, 0.5);
-    scene.cells = {0, 0};
-    scene.surfaces.front() = {
-        .shape = Shape::height_map, .file = write("ring.csv", text.str()), .spacing = {1e-5, 1e-5}};
+    scene.grid.cells = {0, 0};
+    scene.surfaces.front() = {.shape = Shape::height_map,
+                              .map = {.file = write("ring.csv", text.str()), .spacing = {1e-5, 1e-5}}};
     scene.lower = {6.8e9, 0.3};
     scene.steps[0].normal = 0.1;
     for (const double ratio : {-0.5, 0.7, 0.9}) {
       for (const int parts : {1, 8}) {
         scene.steps[0].torsion = MomentRatio{ratio};
-        scene.substeps = parts;
+        scene.solver.substeps = parts;
         const ModelSolution solution = solve_in_model_units(scene);
         EXPECT_EQ(solution.status, Status::converged) << solution.message;
         EXPECT_THAT(left_out(solution), AllOf(Contains(kTranslations), Not(Contains(kQuadrant))));
@@ -378,16 +378,16 @@ TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
       text << (i - 7.5) * h << ',' << (j - 7.5) * h << ',' << 1e9 + 1e7 * i << '\n';
   }
   Scene scene = paper_scene(16, 0.5);
-  scene.extent = std::array{1e-3, 1e-3};
+  scene.grid.extent = std::array{1e-3, 1e-3};
   scene.ends_at_grid_edge = true;  // every cell is pressed
   scene.steps[0].normal.reset();
-  scene.pressure = PressureModel::file;
-  scene.pressure_file = write("pressure.csv", text.str());
+  scene.contact.pressure = PressureModel::file;
+  scene.contact.pressure_file = write("pressure.csv", text.str());
   const ModelSolution solution = solve_in_model_units(scene);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_THAT(left_out(solution), ElementsAre(kCoupling));  // it turns about a centre of its own
   Scene full = scene;
-  full.model = ModelChoice::full;
+  full.solver.model = ModelChoice::full;
   EXPECT_EQ(predicted_memory(scene, make_model(scene)).solver,
             predicted_memory(full, make_model(full)).solver);
 }

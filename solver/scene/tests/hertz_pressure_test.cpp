@@ -118,11 +118,11 @@ TEST(HertzAtCentres, IsHertzsPressureThere) {
 
 TEST(HertzPressure, OfASceneIsThatOfItsContact) {
   Scene scene = paper_scene(50, 0.5);
-  scene.pressure = PressureModel::hertz;
+  scene.contact.pressure = PressureModel::hertz;
   EXPECT_NEAR(
       press(scene).solution.pressure.maxCoeff() * press(scene).model.stress_unit / paper::kPeakPressure, 1.0,
       1e-3);  // centres half a cell off the middle: (h/a)^2/4
-  scene.pressure = PressureModel::hertz_averaged;
+  scene.contact.pressure = PressureModel::hertz_averaged;
   EXPECT_NEAR(load(press(scene)) / paper::kLoad, 1.0, kHertzRounding);
 }
 

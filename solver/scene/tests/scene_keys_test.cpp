@@ -82,11 +82,12 @@ std::string members(const Scene& scene) {
   const Surface& surface = scene.surfaces[0];
   return fmt::format(
       "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.layer.kind == nullptr,
-      static_cast<int>(scene.pressure), static_cast<int>(scene.coupling), static_cast<int>(scene.method),
-      static_cast<int>(scene.model), static_cast<int>(scene.op), static_cast<int>(scene.cell_traction),
-      scene.tolerance, scene.max_iterations, scene.threads, scene.rounding_seed, scene.cycles,
+      static_cast<int>(scene.contact.pressure), static_cast<int>(scene.contact.coupling),
+      static_cast<int>(scene.solver.method), static_cast<int>(scene.solver.model),
+      static_cast<int>(scene.solver.op), static_cast<int>(scene.solver.cell_traction), scene.solver.tolerance,
+      scene.solver.max_iterations, scene.solver.threads, scene.solver.rounding_seed, scene.cycles,
       scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus, surface.at[0],
-      surface.at[1], surface.angle, surface.inner_radius, surface.height_unit);
+      surface.at[1], surface.angle, surface.inner_radius, surface.map.unit);
 }
 
 class SceneKeys : public SceneFile {

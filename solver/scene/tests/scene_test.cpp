@@ -20,26 +20,26 @@ TEST_F(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.upper.young_modulus, 210e9);
   EXPECT_EQ(scene.upper.poisson_ratio, 0.3);
   EXPECT_EQ(scene.lower.young_modulus, 210e9);
-  EXPECT_EQ(scene.friction.coefficient, 0.1);
-  EXPECT_EQ(scene.pressure, PressureModel::solved);
-  EXPECT_EQ(scene.coupling, Coupling::automatic);
+  EXPECT_EQ(scene.contact.friction.coefficient, 0.1);
+  EXPECT_EQ(scene.contact.pressure, PressureModel::solved);
+  EXPECT_EQ(scene.contact.coupling, Coupling::automatic);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);
   EXPECT_EQ(value_if<MomentRatio>(scene.steps[0].torsion), 0.9);
   EXPECT_FALSE(value_if<Moment>(scene.steps[0].torsion) || value_if<Twist>(scene.steps[0].torsion));
-  EXPECT_EQ(scene.cells, (std::array<Index, 2>{128, 96}));
-  EXPECT_EQ(scene.extent, (std::array<double, 2>{0.0011, 0.0012}));
-  EXPECT_EQ(scene.op, OperatorKind::dcfft);
-  EXPECT_EQ(scene.tolerance, 1e-7);
-  EXPECT_EQ(scene.max_iterations, 70);
-  EXPECT_EQ(scene.threads, 2);
+  EXPECT_EQ(scene.grid.cells, (std::array<Index, 2>{128, 96}));
+  EXPECT_EQ(scene.grid.extent, (std::array<double, 2>{0.0011, 0.0012}));
+  EXPECT_EQ(scene.solver.op, OperatorKind::dcfft);
+  EXPECT_EQ(scene.solver.tolerance, 1e-7);
+  EXPECT_EQ(scene.solver.max_iterations, 70);
+  EXPECT_EQ(scene.solver.threads, 2);
 }
 
 TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   const Scene scene = read(kShortScene);
   EXPECT_EQ(scene.name, "scene");  // the file's
-  EXPECT_FALSE(scene.extent);
+  EXPECT_FALSE(scene.grid.extent);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);  // written as a whole number
-  EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").tolerance, scene.tolerance);
+  EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").solver.tolerance, scene.solver.tolerance);
 }
 
 TEST_F(SceneFile, MayHaveALayerOnABody) {
@@ -76,9 +76,9 @@ TEST_F(SceneFile, HasEachShapeWithItsKeys) {
   EXPECT_EQ(power.coefficient, 3e7);
   const Surface map =
       shape("shape = \"height_map\"\nfile = \"sub/heights.csv\"\nspacing = [1e-5, 2e-5]\nunit = \"um\"\n");
-  EXPECT_EQ(map.file, folder_ / "sub/heights.csv");  // relative to the scene
-  EXPECT_EQ(map.spacing, (std::array<double, 2>{1e-5, 2e-5}));
-  EXPECT_EQ(map.height_unit, 1e-6);
+  EXPECT_EQ(map.map.file, folder_ / "sub/heights.csv");  // relative to the scene
+  EXPECT_EQ(map.map.spacing, (std::array<double, 2>{1e-5, 2e-5}));
+  EXPECT_EQ(map.map.unit, 1e-6);
 }
 
 TEST_F(SceneFile, MayHaveSeveralShapes) {
@@ -116,14 +116,14 @@ TEST_F(SceneFile, OverridesAreAppliedFirst) {
   const Scene scene = read(kShortScene, {"load.normal=5", "grid.cells=[8, 9]", "contact.pressure=hertz",
                                          "name=other", "solver.operator=\"dense\"", "load.normal=6"});
   EXPECT_EQ(scene.steps[0].normal, 6.0);  // the last one holds
-  EXPECT_EQ(scene.cells, (std::array<Index, 2>{8, 9}));
-  EXPECT_EQ(scene.pressure, PressureModel::hertz);
+  EXPECT_EQ(scene.grid.cells, (std::array<Index, 2>{8, 9}));
+  EXPECT_EQ(scene.contact.pressure, PressureModel::hertz);
   EXPECT_EQ(scene.name, "other");
-  EXPECT_EQ(scene.op, OperatorKind::dense);
+  EXPECT_EQ(scene.solver.op, OperatorKind::dense);
   // A wrong value in the file does not matter where it is overridden.
   std::string text = kShortScene;
   text.replace(text.find("friction = 0.1"), 14, "friction = \"x\"");
-  EXPECT_EQ(read(text, {"contact.friction=0.2"}).friction.coefficient, 0.2);
+  EXPECT_EQ(read(text, {"contact.friction=0.2"}).contact.friction.coefficient, 0.2);
 }
 
 TEST_F(SceneFile, OneTorsionLoadOverridesAnother) {

@@ -267,7 +267,7 @@ TEST(TurnedEllipsoid, HasTheContactItHasStraight) {
 /// Curvatures add up: two spheres on each other are one of half the radius.
 TEST(SumOfSpheres, IsASphereOfHalfTheRadius) {
   Scene scene = scene_of({sphere(0.018), sphere(0.018)}, 32);
-  scene.extent = {1e-3, 1e-3};
+  scene.grid.extent = {1e-3, 1e-3};
   const Contact sum = press(scene);
   scene.surfaces = {sphere(0.009)};
   const Contact half = press(scene);
@@ -288,8 +288,9 @@ TEST(SpheresSideBySide, ShareTheLoad) {
   const std::vector<Surface> spheres{moved(sphere(paper::kRadius), -0.5 * distance, 0.0),
                                      moved(sphere(paper::kRadius), 0.5 * distance, 0.0)};
   Scene scene = scene_of(spheres, 0, Combine::nearest);
-  scene.cells = {128, 30};                             // 12 cells in a radius
-  scene.extent = {128.0 * a / 12.0, 30.0 * a / 12.0};  // too narrow only for one that carried the whole load
+  scene.grid.cells = {128, 30};  // 12 cells in a radius
+  scene.grid.extent = {128.0 * a / 12.0,
+                       30.0 * a / 12.0};  // too narrow only for one that carried the whole load
   const Contact contact = press(scene);
   const Model& model = contact.model;
   EXPECT_TRUE(model.pressure_part.quadrant());
@@ -340,7 +341,7 @@ TEST(BodiesOfRevolution, SinkInAsSneddonSays) {
 
 TEST(ASurface, ThatNoCellCanTouchIsRefused) {
   Scene scene = scene_of({moved(punch(1e-4, 0.0), 2e-4, 0.0), moved(punch(1e-4, 0.0), -2e-4, 0.0)}, 16);
-  scene.extent = {1e-3, 1e-3};
+  scene.grid.extent = {1e-3, 1e-3};
   EXPECT_THROW(make_model(scene), InputError);
   scene.combine = Combine::nearest;
   EXPECT_NO_THROW(make_model(scene));

@@ -35,14 +35,15 @@ Scene in_units(Scene scene, const Units& units) {
     body->coating->young_modulus *= pascal;
     body->coating->thickness *= units.metre;
   }
-  scene.friction.shear_strength *= pascal;
-  if (scene.friction.kind == FrictionKind::power)
-    scene.friction.coefficient *= std::pow(pascal, 1.0 - scene.friction.exponent);
+  scene.contact.friction.shear_strength *= pascal;
+  if (scene.contact.friction.kind == FrictionKind::power)
+    scene.contact.friction.coefficient *= std::pow(pascal, 1.0 - scene.contact.friction.exponent);
   scene.steps[0].normal = *scene.steps[0].normal * units.newton;
   if (const auto moment = value_if<Moment>(scene.steps[0].torsion)) {
     scene.steps[0].torsion = Moment{*moment * units.newton * units.metre};
   }
-  if (scene.extent) scene.extent = {(*scene.extent)[0] * units.metre, (*scene.extent)[1] * units.metre};
+  if (scene.grid.extent)
+    scene.grid.extent = {(*scene.grid.extent)[0] * units.metre, (*scene.grid.extent)[1] * units.metre};
   return scene;
 }
 
@@ -56,7 +57,7 @@ Scene by_moment() {
 }
 Scene over_an_extent() {
   Scene scene = ellipsoid_scene(kCells, 0.03, 0.01, 0.5);
-  scene.extent = {1.6e-3, 0.9e-3};
+  scene.grid.extent = {1.6e-3, 0.9e-3};
   return scene;
 }
 
@@ -68,10 +69,10 @@ Scene with_layers() {
 
 Scene under_law(FrictionKind kind) {
   Scene scene = by_ratio();
-  scene.friction.kind = kind;
-  scene.friction.coefficient = kind == FrictionKind::power ? 500.0 : 0.1;
-  scene.friction.exponent = 0.6;
-  scene.friction.shear_strength = 0.7e8;
+  scene.contact.friction.kind = kind;
+  scene.contact.friction.coefficient = kind == FrictionKind::power ? 500.0 : 0.1;
+  scene.contact.friction.exponent = 0.6;
+  scene.contact.friction.shear_strength = 0.7e8;
   return scene;
 }
 

@@ -36,12 +36,12 @@ Coating coat(double h, double modulus, double poisson_ratio) { return {h, modulu
 
 void press_a_layer_by_hertz(Scene& s) {
   s.layer = layer_of(1e-12, 1e-12);
-  s.pressure = PressureModel::hertz;
+  s.contact.pressure = PressureModel::hertz;
 }
 
 void couple_hertz_fully(Scene& s) {
-  s.coupling = Coupling::full;
-  s.pressure = PressureModel::hertz;
+  s.contact.coupling = Coupling::full;
+  s.contact.pressure = PressureModel::hertz;
 }
 
 void push_and_displace(Scene& s) {
@@ -50,7 +50,7 @@ void push_and_displace(Scene& s) {
 }
 
 void push_by_the_papers_method(Scene& s) {
-  s.method = Method::paper;
+  s.solver.method = Method::paper;
   s.steps[0].force = {1.0, 0.0};
 }
 
@@ -75,9 +75,9 @@ const std::vector<Mistake> kWrongBodies{
     {"upper.layer.young_modulus", [](Scene& s) { s.upper.coating = coat(1e-4, kInfinite, 0.3); }},
     {"upper.layer.poisson_ratio", [](Scene& s) { s.upper.coating = coat(1e-4, 1e9, kNaN); }},
     {"contact.pressure", press_a_layer_by_hertz},
-    {"contact.friction", [](Scene& s) { s.friction.coefficient = kNaN; }},
-    {"contact.shear_strength", [](Scene& s) { s.friction.kind = FrictionKind::tresca; }},
-    {"contact.friction_exponent", [](Scene& s) { s.friction.exponent = 0.0; }},
+    {"contact.friction", [](Scene& s) { s.contact.friction.coefficient = kNaN; }},
+    {"contact.shear_strength", [](Scene& s) { s.contact.friction.kind = FrictionKind::tresca; }},
+    {"contact.friction_exponent", [](Scene& s) { s.contact.friction.exponent = 0.0; }},
     {"contact.coupling", couple_hertz_fully},
 };
 
@@ -102,12 +102,12 @@ const std::vector<Mistake> kWrongLoadsAndGrids{
     {"load.force", [](Scene& s) { s.steps[0].force[0] = kNaN; }},
     {"load.displacement", push_and_displace},
     {"cycles", [](Scene& s) { s.cycles = 0; }},
-    {"grid.cells", [](Scene& s) { s.cells = {}; }},
-    {"grid.extent", [](Scene& s) { s.extent.emplace(); }},
-    {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
-    {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
-    {"solver.threads", [](Scene& s) { s.threads = -1; }},
-    {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
+    {"grid.cells", [](Scene& s) { s.grid.cells = {}; }},
+    {"grid.extent", [](Scene& s) { s.grid.extent.emplace(); }},
+    {"solver.tolerance", [](Scene& s) { s.solver.tolerance = 0.0; }},
+    {"solver.max_iterations", [](Scene& s) { s.solver.max_iterations = 0; }},
+    {"solver.threads", [](Scene& s) { s.solver.threads = -1; }},
+    {"solver.rounding_seed", [](Scene& s) { s.solver.rounding_seed = -1; }},
     {"solver.method", push_by_the_papers_method},
 };
 

@@ -38,8 +38,8 @@ Scene scene_of(const std::vector<Surface>& surfaces, std::array<Index, 2> cells,
   Scene scene = paper_scene(0, 0.5);
   scene.surfaces = surfaces;
   scene.combine = combine;
-  scene.cells = cells;
-  scene.extent = {cell_size * static_cast<double>(cells[0]), cell_size * static_cast<double>(cells[1])};
+  scene.grid.cells = cells;
+  scene.grid.extent = {cell_size * static_cast<double>(cells[0]), cell_size * static_cast<double>(cells[1])};
   return scene;
 }
 
@@ -82,8 +82,8 @@ TEST(CutOffContact, OfALongBodyIsRefusedAlongEitherAxis) {
     const Surface half{.shape = Shape::ellipsoid, .radius_1 = 0.32, .radius_2 = 0.02, .angle = angle};
     Scene scene = scene_of({half, half}, {32, 32}, 1.0);
     const HertzContact contact = hertz_contact(paper::kLoad, 0.16, 0.01, effective_modulus(scene));
-    scene.extent = {1.4 * contact.semi_axis_1, 6.0 * contact.semi_axis_2};
-    if (along_x2) std::swap((*scene.extent)[0], (*scene.extent)[1]);
+    scene.grid.extent = {1.4 * contact.semi_axis_1, 6.0 * contact.semi_axis_2};
+    if (along_x2) std::swap((*scene.grid.extent)[0], (*scene.grid.extent)[1]);
     EXPECT_THAT(refusal(scene), HasSubstr("beyond the grid's edge")) << along_x2;
   }
 }
@@ -93,9 +93,9 @@ TEST(CutOffContact, IsRefusedWithAnExtentThatIsEnough) {
     for (const double extent : {0.81e-3, 0.9e-3}) {
       const auto told = extent_told(refusal(scene_with(extent)));
       Scene enough = scene_with(extent);
-      enough.extent = told;
+      enough.grid.extent = told;
       EXPECT_EQ(refusal(enough), "") << told[0] << " x " << told[1];
-      enough.extent = {0.85 * told[0], 0.85 * told[1]};
+      enough.grid.extent = {0.85 * told[0], 0.85 * told[1]};
       EXPECT_NE(refusal(enough), "") << "more is told than is needed";
     }
   }
@@ -215,7 +215,7 @@ TEST(GridEdge, MayBeTheBodysWhereTheSceneSaysSo) {
   EXPECT_EQ(solve_in_model_units(one).status, Status::converged);
   for (const PressureModel hertz : {PressureModel::hertz, PressureModel::hertz_averaged}) {
     for (const bool ends : {false, true}) {  // Hertz's bodies do not end
-      one.pressure = hertz;
+      one.contact.pressure = hertz;
       one.ends_at_grid_edge = ends;
       EXPECT_THAT(refusal(one), HasSubstr("larger than the contact"));
     }
@@ -236,18 +236,18 @@ TEST(GridEdge, HoldsAHistorysLargestLoad) {
 TEST(GridEdge, IsLookedAtUnderFullCoupling) {
   const auto scene_with = [](double extent) {
     Scene scene = two_spheres_summed(extent);
-    scene.cells = {24, 24};
+    scene.grid.cells = {24, 24};
     scene.lower = {3e9, 0.0};
     scene.upper.young_modulus = HUGE_VAL;
-    scene.coupling = Coupling::full;
-    scene.friction.coefficient = 0.3;
+    scene.contact.coupling = Coupling::full;
+    scene.contact.friction.coefficient = 0.3;
     scene.steps[0].normal = 20.0;
     return scene;
   };
   const std::string message = refusal(scene_with(0.7e-3));
   EXPECT_THAT(message, HasSubstr("grid.extent"));
   Scene enough = scene_with(0.7e-3);
-  enough.extent = extent_told(message);
+  enough.grid.extent = extent_told(message);
   EXPECT_EQ(refusal(enough), "");
 }
 

@@ -20,13 +20,15 @@ using Pair = std::array<double, 2>;
 Scene sphere(const Pair& at_cells, Index cells = 40) {
   const double h = paper::kContactRadius / 10.0;
   Scene scene = paper_scene(cells, 0.6);
-  scene.extent = {h * static_cast<double>(cells), h * static_cast<double>(cells)};
+  scene.grid.extent = {h * static_cast<double>(cells), h * static_cast<double>(cells)};
   scene.surfaces[0].at = {at_cells[0] * h, at_cells[1] * h};
-  scene.tolerance = kGap;
+  scene.solver.tolerance = kGap;
   return scene;
 }
 
-double cell_size(const Scene& scene) { return (*scene.extent)[0] / static_cast<double>(scene.cells[0]); }
+double cell_size(const Scene& scene) {
+  return (*scene.grid.extent)[0] / static_cast<double>(scene.grid.cells[0]);
+}
 
 ModelSolution solved(const Scene& scene) {
   ModelSolution solution = solve_in_model_units(scene);
@@ -215,7 +217,7 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
 /// A force moves it, and nothing turns it.
 TEST(OneCell, MovesByItsOwnCoefficient) {
   Scene scene = paper_scene(3, 0.0);
-  scene.extent = {2.9e-3, 2.9e-3};  // a cell is hardly smaller than the contact
+  scene.grid.extent = {2.9e-3, 2.9e-3};  // a cell is hardly smaller than the contact
   scene.steps[0].force = {30.0, -10.0};
   const ModelSolution solution = solved(scene);
   EXPECT_EQ(solution.contact_cells, 1);
