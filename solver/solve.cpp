@@ -31,9 +31,10 @@ std::shared_ptr<SolveCache> prepare_cache(std::shared_ptr<SolveCache> cache, con
   const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
   if (!cache && repeats) cache = std::make_shared<SolveCache>();
   if (cache) {
-    const double room = scene.memory_limit.value_or(std::numeric_limits<double>::infinity()) -
+    const double room = scene.solver.memory_limit.value_or(std::numeric_limits<double>::infinity()) -
                         predicted_memory(scene, model).total();
-    cache->begin_solve(scene.rounding_seed == 0 ? room : 0.0);  // rounding changes with every application
+    cache->begin_solve(scene.solver.rounding_seed == 0 ? room
+                                                       : 0.0);  // rounding changes with every application
   }
   return cache;
 }

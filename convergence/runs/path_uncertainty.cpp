@@ -130,13 +130,8 @@ std::optional<Scene> coarse_scene(const Scene& scene, const Solution& solution) 
     centre = {grid.x1(0) - 0.5 * grid.h1 - (few.x1(0) - 0.5 * few.h1),
               grid.x2(0) - 0.5 * grid.h2 - (few.x2(0) - 0.5 * few.h2)};
   }
-<<<<<<< HEAD:convergence/runs/path_uncertainty.cpp
-  coarse->friction.factors = solution.friction.factors;
-  coarse->friction = resampled(std::move(coarse->friction), grid, few, centre);
-=======
-  coarse->contact.friction.factors = model.friction.factors;
+  coarse->contact.friction.factors = solution.friction.factors;
   coarse->contact.friction = resampled(std::move(coarse->contact.friction), grid, few, centre);
->>>>>>> 5706058e (Group the scene's members by the tables of its file):solver/load_path.cpp
   return coarse;
 }
 
@@ -164,13 +159,8 @@ void shorten(Scene& scene, std::size_t steps) {
 
 }  // namespace
 
-<<<<<<< HEAD:convergence/runs/path_uncertainty.cpp
 bool depends_on_path(const Scene& scene, bool coupled) {
-  if (scene.method != Method::coulomb) return false;
-=======
-bool depends_on_path(const Scene& scene, const Model& model) {
   if (scene.solver.method != Method::coulomb) return false;
->>>>>>> 5706058e (Group the scene's members by the tables of its file):solver/load_path.cpp
   const bool one_pressure = std::ranges::all_of(
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
   const bool turned_only = std::ranges::none_of(scene.steps, brings_translation);

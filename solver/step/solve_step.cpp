@@ -26,9 +26,9 @@ constexpr double kGapRounding = 1e-13;
 /// rounding. The other methods have stopped on the gap of the part of the grid that they solved; the whole
 /// grid's differs by rounding.
 CertificateBounds promised(const Scene& scene) {
-  const double loads = std::max(scene.tolerance, kSumRounding);
-  const double gap = scene.method == Method::paper ? std::numeric_limits<double>::infinity()
-                                                   : scene.tolerance + kGapRounding;
+  const double loads = std::max(scene.solver.tolerance, kSumRounding);
+  const double gap = scene.solver.method == Method::paper ? std::numeric_limits<double>::infinity()
+                                                          : scene.solver.tolerance + kGapRounding;
   return {.gap = gap, .moment = loads, .force = loads, .friction_bound = loads};
 }
 
@@ -62,7 +62,7 @@ Found solve_coupled(const Scene& scene, const Model& model, const Step& step, co
   const CoupledProblem problem{
       .gap = model.gap,
       .traction = before.untouched() ? ArrayXd::Zero(2 * model.grid.cells()) : before.traction,
-      .tolerance = scene.tolerance,
+      .tolerance = scene.solver.tolerance,
       .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
       .solve_pressure =
           [&](const ArrayXd& opening, const StaggeredTarget& goal) {
