@@ -31,17 +31,17 @@ struct Content {
 /// Where each dataset's values lie in a file.
 using Offsets = std::vector<off_t>;
 
-constexpr std::size_t kNames = std::size_t{1} << 16;  ///< bytes of a file beside values: names and their tree
+constexpr std::size_t kNames = std::size_t{1} << 16;  ///< bytes of a file for names and their tree
 
 [[noreturn]] void fail(int error) { throw std::system_error(error, std::generic_category()); }
 
-/// The error of what was written; 0: it is on the disk.
+/// Flushes to the disk and returns errno; 0: success.
 int error_of(std::FILE* file) {
   const bool done = std::ferror(file) == 0 && std::fflush(file) == 0 && fsync(fileno(file)) == 0;
   return done ? 0 : (errno != 0 ? errno : EIO);
 }
 
-/// The library writes by name: it has to be a file's, and still that of this one.
+/// HDF5 opens a file by its name, so the name must still belong to this file.
 void require_name(std::FILE* file, const fs::path& name) {
   struct stat open_one {
   }, named{};
@@ -49,7 +49,7 @@ void require_name(std::FILE* file, const fs::path& name) {
   if (stat(name.c_str(), &named) != 0 || named.st_ino != open_one.st_ino) fail(ENOENT);
 }
 
-/// Room for names is had before: HDF5 keeps what it could not write and crashes over it when the process
+/// Allocates the space for names first: HDF5 keeps data that it could not write and crashes when the process
 /// ends.
 Offsets lay_out(std::FILE* file, const fs::path& name, const std::vector<Content>& contents) {
   require_name(file, name);
@@ -129,7 +129,7 @@ void require_room(const fs::path& path, const std::vector<Content>& contents) {
   }
 }
 
-/// ranks: those that have parts of the contents.
+/// ranks: the processes that hold parts of the contents.
 void write_hdf5(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
   hdf5_library(path);
   require_room(path, contents);

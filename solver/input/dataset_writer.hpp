@@ -31,8 +31,8 @@ struct LongDataset {
 /// cannot be written.
 void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts = {});
-/// Likewise, holding a piece of one dataset at a time. All ranks call it, and write their parts into one
-/// file, which is in a place that all of them see. If one of them cannot write, the first one throws.
+/// Writes long datasets piece by piece. All ranks call it and write their parts into one file on a shared
+/// file system. If any rank cannot write, the first rank throws.
 void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets,
                     const Ranks& ranks = {});
 

@@ -136,7 +136,7 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   fmt::print(file, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
 }
 
-/// Each process has what is kept of its own rows, after that of the processes before it.
+/// Each process writes the kept part of its own rows, in the order of the ranks.
 void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                 const ArrayXd& keep) {
   const IndexRange rows = own_rows(grid);
@@ -208,7 +208,9 @@ std::vector<Index> cells_of_rows(const path& file, const Grid& grid, const std::
                        fmt::format("row {}: ({}, {}) {}", row + 1, x1[row], x2[row], complaint));
     };
     if (!is_one(i, grid.n1) || !is_one(j, grid.n2)) {
-      fail("is not a cell's centre; allowed: those of grid.cells over grid.extent, centred at the origin");
+      fail(
+          "is not a cell's centre; allowed: the centres of grid.cells over grid.extent, centred at the "
+          "origin");
     }
     cells.push_back(std::lround(i) * grid.n2 + std::lround(j));
     if (given[static_cast<std::size_t>(cells.back())]) {

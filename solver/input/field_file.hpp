@@ -28,7 +28,7 @@ inline constexpr Index kMaxRows = Index{1} << 24;
 
 struct TableOptions {
   /// Names of all columns of a table without a header, "x1 [mm]" with a unit; of an HDF5 file the paths of
-  /// those that are read, in their order.
+  /// the datasets to read, in this order.
   std::vector<std::string> columns = {};
   bool may_be_missing = false;  ///< NaN and empty cells are NaN; they are refused otherwise
 };

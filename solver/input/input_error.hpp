@@ -6,10 +6,10 @@
 
 namespace slipstick::solver {
 
-/// Characters of what a file says that a message shows: a file may be endless.
+/// Largest number of characters of a value that a message shows.
 inline constexpr std::size_t kMaxShown = 200;
 
-/// Something the caller got wrong, with where it stands, what it says and what is allowed.
+/// An error of the caller's input: file, key, value and allowed values.
 class InputError : public std::invalid_argument {
  public:
   InputError(const std::string& file, const std::string& key, const std::string& value,

@@ -17,7 +17,7 @@
 namespace slipstick::solver {
 namespace {
 
-/// A regular file open for reading. Opening does not wait for somebody to write into a pipe.
+/// A regular file open for reading. Opening does not block on a pipe without a writer.
 class InputFile {
  public:
   InputFile(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed)
@@ -87,7 +87,7 @@ bool lies_within(const std::filesystem::path& file, const std::filesystem::path&
   const auto whole = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
   if (error) return false;
   const auto around = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error) / "";
-  // The folder's path ends with an empty part, which stands for whatever follows.
+  // The folder's path ends with an empty part, which matches any rest.
   return !error && std::mismatch(whole.begin(), whole.end(), around.begin(), around.end()).second ==
                        std::prev(around.end());
 }

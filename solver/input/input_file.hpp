@@ -10,11 +10,11 @@ namespace slipstick::solver {
 /// Sizes in bytes above which a file is taken for a mistake. People write settings, where a history of ten
 /// thousand steps fills one megabyte.
 inline constexpr std::uintmax_t kLargestSettings = std::uintmax_t{4} << 20;
-/// The result of a history of ten thousand steps; parsed, a JSON takes up to 25 times its text.
+/// The result of a history of ten thousand steps. A parsed JSON needs up to 25 times the bytes of its text.
 inline constexpr std::uintmax_t kLargestJson = std::uintmax_t{128} << 20;
 /// Tables of numbers as text: all columns of a contact of five million cells.
 inline constexpr std::uintmax_t kLargestTextTable = std::uintmax_t{1} << 30;
-/// HDF5 files: only the datasets that are asked for are read.
+/// HDF5 files; only the requested datasets are read.
 inline constexpr std::uintmax_t kLargestHdf5 = std::uintmax_t{16} << 30;
 
 /// Throws InputError, naming the file and `allowed` ("a TOML file"), for a folder, a device, a pipe, a file

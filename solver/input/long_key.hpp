@@ -9,8 +9,8 @@ namespace slipstick::solver {
 inline constexpr std::size_t kMaxKeyParts = 32;
 
 /// The line of the first key of a TOML text that is too long; 0: there is none. toml++ destroys tables in
-/// tables recursively: keys of a million parts would overrun the stack. The dots between parts are counted,
-/// outside of strings; the parts of keys around a table in braces add to those of the keys in it.
+/// tables recursively: keys of a million parts would overrun the stack. The dots outside of strings are
+/// counted; a key inside a table in braces has the parts of the keys around that table too.
 std::ptrdiff_t line_of_long_key(const std::string& text);
 
 }  // namespace slipstick::solver

@@ -20,7 +20,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  // The beginning of an endless word tells as much as the word.
+  // Compare only a prefix of long words: the distance costs the product of the lengths.
   constexpr std::size_t kMaxCompared = 100;
   const std::string compared = word.substr(0, kMaxCompared);
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {

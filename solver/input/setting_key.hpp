@@ -53,7 +53,7 @@ inline constexpr const char* kRequired = "required";
 /// For keys that hold neither numbers nor words.
 inline const Range kAny{};
 
-/// Words as what a key may be.
+/// The range of a key that takes one of these words.
 template <typename Value>
 Range one_of(const Words<Value>& words) {
   std::string list;

@@ -65,8 +65,8 @@ Heading heading_of(std::string_view text) {
   return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2))};
 }
 
-/// A number with a decimal point or comma, times a power of ten, rounded once: the digits that are written
-/// stay those of the value. Fortran's D is an exponent's e.
+/// A number with a decimal point or comma, times a power of ten, rounded once, so that the power of ten
+/// changes no digit. Fortran's D is read as e.
 std::optional<double> parse_number(std::string_view text, int power) {
   std::string plain(text);
   std::ranges::replace(plain, ',', '.');
@@ -108,7 +108,7 @@ class TextTable {
     return found;
   }
 
-  /// Where the caller told the names, a line of names before the rows says nothing.
+  /// Where the caller gives the names, a header line before the rows is skipped.
   void skip_header() {
     const auto [next, line] = std::pair(next_, line_);
     std::string_view first = next_line();
@@ -135,7 +135,7 @@ class TextTable {
   }
 
   /// The values of the next row as text; none at the end. They stay until the next call. The first row
-  /// decides on the separator: it gives so many columns, and numbers in those that are read.
+  /// decides on the separator, which must give this number of columns and numbers in the columns `read`.
   const std::vector<std::string_view>& next_row(std::size_t columns, const std::vector<std::size_t>& read) {
     values_.clear();
     std::string_view line = next_line();
@@ -213,8 +213,8 @@ class TextTable {
     return found;
   }
 
-  /// Empty values at the end of a line do not count, beyond so many columns. Blanks are one separator however
-  /// many; a unit belongs to the name before it.
+  /// Empty values after the last column are ignored. A run of blanks is one separator; a unit belongs to the
+  /// name before it.
   void split(std::string_view line, char separator, std::size_t columns) {
     values_.clear();
     const auto add = [&](std::string_view value) {

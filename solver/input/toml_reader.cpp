@@ -44,8 +44,7 @@ std::string print(const toml::node& node) {
   return text.str();
 }
 
-/// Nothing where it is no number. Whole numbers of more than 53 bits are rounded: toml++ has no double for
-/// them.
+/// The node's number, or none. Integers of more than 53 bits are rounded to double.
 std::optional<double> number_of(const toml::node& node) {
   if (const auto* const whole = node.as_integer()) return static_cast<double>(whole->get());
   if (const auto* const number = node.as_floating_point()) return number->get();
@@ -73,7 +72,8 @@ struct Leaf {
   const toml::node* value;
 };
 
-/// Collects all leaves of a table. into_arrays: those of tables in arrays too, else such an array is a leaf.
+/// Collects all leaves of a table. into_arrays: also the leaves of tables in arrays; otherwise such an array
+/// is a leaf.
 void collect_leaves(const toml::table& table, const std::string& prefix, bool into_arrays,
                     std::vector<Leaf>& leaves) {
   for (const auto& [name, child] : table) {
@@ -198,7 +198,7 @@ void SceneReader::fail(const std::string& key, const std::string& value, const s
   throw InputError(where(key), key, value, allowed);
 }
 
-/// A key that is missing may be there under a misspelt name: then that is what to say.
+/// Reports a misspelt key where one resembles the missing key.
 void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
   for (const std::string& leaf : keys_of(toml_->root)) {
     const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;

@@ -12,8 +12,7 @@
 
 namespace slipstick::solver {
 
-/// The text of a TOML file, or text that stands for one. Messages call it `file`, and its relative paths
-/// begin there.
+/// TOML text and the file that it comes from, which messages name; relative paths are relative to it.
 struct SettingsText {
   std::string text;
   std::filesystem::path file;
@@ -22,9 +21,9 @@ struct SettingsText {
 SettingsText settings_of(const std::filesystem::path& file);
 
 /// Reads the keys of a TOML file one by one, by dotted path; an index picks one of an array of tables, as in
-/// step[1].twist. The table of all keys says what is allowed; where that depends on other keys, the caller
-/// says it. reject_unknown() at the end finds keys that were not read. Throws InputError, and
-/// std::logic_error for a key that the table does not have, unless the table is empty.
+/// step[1].twist. The table of all keys has the allowed values; where these depend on other keys, the caller
+/// gives them. reject_unknown() reports keys that were not read. Throws InputError, and std::logic_error for
+/// a key that the table does not have, unless the table is empty.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -32,7 +31,7 @@ class SceneReader {
   SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
               const SettingKeys& keys = {});
 
-  /// Where one of several keys that exclude each other is overridden, those that the file has instead are
+  /// If the command line sets one of several mutually exclusive keys, the file's other keys of that group are
   /// dropped.
   void prefer_overridden(const std::vector<std::string>& alternatives);
 
@@ -101,7 +100,7 @@ class SceneReader {
   std::string where(const std::string& key) const;
 
   std::filesystem::path file_;
-  struct ReadKeys;  ///< the parsed file, the table of keys, and those that were asked for
+  struct ReadKeys;  ///< the parsed file, the table of keys, and the keys read so far
   std::shared_ptr<ReadKeys> toml_;
   std::set<std::string> overridden_;
 };

@@ -46,8 +46,8 @@ void fill(int descriptor, const fs::path& name, const WriteNamed& write, bool to
   require(std::fclose(stream.release()) == 0);
 }
 
-/// A draft beside a file. It takes the file's place, or goes. Its writer has it locked until the writer ends,
-/// so that the next writer takes over what a killed one left, and nothing else.
+/// A draft in the file's folder that is renamed to the file or deleted. Its writer holds a lock on it, so
+/// that another writer reuses only the draft of a killed writer.
 class Draft {
  public:
   explicit Draft(const fs::path& file) {
@@ -152,7 +152,7 @@ void write_whole_named_file(const fs::path& file, const WriteNamed& write) {
     if (exists && !S_ISREG(before.st_mode))
       return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), target, write, false);
     Draft draft(target);
-    // Where the old file is somebody else's, its permissions are what can be kept.
+    // Permissions can be kept, the owner of the old file cannot.
     if (exists) fchmod(draft.descriptor(), before.st_mode & 07777);
     fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), write, true);
     draft.replace(target);

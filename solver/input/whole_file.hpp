@@ -9,17 +9,17 @@
 /// The one way in which files are written.
 namespace slipstick::solver {
 
-/// Writes a file so that it is either the old one or the whole new one, whenever this process is killed or
-/// the machine stops: `write` fills a draft beside it, which goes to the disk and then takes its place. A
-/// killed process leaves its draft, which the next writer of the file takes over. A link stays one; what is
-/// no plain file, /dev/stdout for one, is written to as it is. Throws InputError where the file cannot be
-/// written, with the system's reason and what to do; the file is then the old one.
+/// Replaces a file atomically, also if this process is killed or the machine stops: `write` fills a draft in
+/// the same folder, which is flushed to the disk and renamed. The next writer of the file reuses the draft of
+/// a killed process. Links are followed; devices and pipes, such as /dev/stdout, are written to directly.
+/// Throws InputError with the system's reason and a remedy if the file cannot be written; the old file then
+/// stays.
 void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
-/// The same; `write` is told the draft's name too.
+/// The same; `write` also receives the draft's name.
 using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
 void write_whole_named_file(const std::filesystem::path& file, const WriteNamed& write);
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
-/// The same of a name that is the program's own: what is no plain file there, a link or a pipe, is replaced.
+/// The same for a file of the program's own: a link or a pipe of this name is replaced.
 void replace_whole_file(const std::filesystem::path& file, std::string_view content);
 
 /// Where the links of a name lead. Links of the system, such as /dev/stdout, stay: they lead to no name.
@@ -35,8 +35,7 @@ void require_writable(const std::filesystem::path& folder);
 /// asked before a long solve.
 void require_place_for(const std::filesystem::path& file);
 
-/// "cannot be written: No space left on device; ...": what a number of the system (errno) says, and what to
-/// do.
+/// "cannot be written: No space left on device; ...": the system's text for errno, and a remedy.
 std::string why_not_written(int error);
 
 }  // namespace slipstick::solver

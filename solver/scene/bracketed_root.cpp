@@ -27,7 +27,7 @@ double bracketed_root(const std::function<double(double)>& f, double low, double
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   gsl_root_fsolver_set(solver.get(), &function, low, high);
-  constexpr int kMaxIterations = 200;  // bisection alone would need about 60
+  constexpr int kMaxIterations = 200;  // plain bisection would need about 60
   double root = gsl_root_fsolver_root(solver.get());
   for (int i = 0; i < kMaxIterations; ++i) {
     if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) {

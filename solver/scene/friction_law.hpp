@@ -14,7 +14,7 @@ namespace slipstick::solver {
 /// is pressure; the lesser of the two; k p^n.
 enum class FrictionKind { coulomb, tresca, capped, power };
 
-/// "Coulomb's law", and what that allows the shear: "mu p".
+/// The law's name, as "Coulomb's law", and its bound on the shear, as "mu p".
 std::string law_text(FrictionKind kind);
 std::string bound_text(FrictionKind kind);
 

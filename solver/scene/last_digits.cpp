@@ -15,8 +15,8 @@ bool is_rounding(double value, double scale) {
 
 double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / body.young_modulus; }
 
-/// Sides of the grid, or half those of the contact, as far as they are known before the solve and double
-/// precision holds them.
+/// Sides of the grid, or half the sides of the contact; none if they are unknown before the solve or leave
+/// double precision's range.
 std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   const auto& load = scene.steps.front().normal;
   if (scene.grid.extent || !load || !is_bare(scene)) return scene.grid.extent;
@@ -31,8 +31,8 @@ std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   }
 }
 
-/// The largest forces, over those that bring the largest moment about a lever as long as the grid. Only
-/// under Coulomb's law a ratio says a moment before the solve.
+/// The largest force times the grid's length over the largest moment. Only Coulomb's law converts a moment
+/// ratio to a moment before the solve.
 double forces_over_torsion(const Scene& scene, double reach) {
   double force = 0.0;
   double torsion = 0.0;
@@ -59,7 +59,7 @@ Scene without_last_digits(Scene scene) {
   const auto sides = sides_of(scene);
   if (scene.solver.model == ModelChoice::full || !sides) return scene;
   const auto left_out = [&](const std::string& what) {
-    scene.left_out.push_back({what, "less than 1e-12 of what it belongs to"});
+    scene.left_out.push_back({what, "less than 1e-12 of the quantity that it changes"});
   };
   for (Surface& surface : scene.surfaces) {
     for (std::size_t i = 0; i < 2; ++i) {

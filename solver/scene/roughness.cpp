@@ -22,7 +22,7 @@ constexpr double kCutOffRounding = 1e-9;
 /// Relative to the greatest power: below it lies what transforms leave where there is none.
 constexpr double kNoPower = 1e-20;
 
-/// A wave with the wave vector 2 pi/period (i, j); one of each pair of opposite ones stands for both.
+/// A wave with the wave vector 2 pi/period (i, j); of each pair of opposite vectors only one is kept.
 struct Wave {
   Index i;
   Index j;
@@ -53,7 +53,8 @@ std::vector<Wave> waves_of(const Roughness& roughness) {
   return waves;
 }
 
-/// In [0, 2 pi), from the generator's bits alone: the standard's distributions differ between platforms.
+/// In [0, 2 pi), computed from the generator's bits, since the standard's distributions differ between
+/// platforms.
 double draw_phase(std::mt19937_64& generator) {
   return 2.0 * std::numbers::pi * std::ldexp(static_cast<double>(generator() >> 11), -53);
 }

@@ -28,7 +28,7 @@ struct RoughnessSpectrum {
   double rms_height;
   double rms_slope;
   double hurst;                     ///< from the slope of power over wavelength, both as logarithms
-  std::vector<SpectrumRing> rings;  ///< from long waves to short ones, those that are there
+  std::vector<SpectrumRing> rings;  ///< from long waves to short ones; empty rings are omitted
 };
 RoughnessSpectrum measure_spectrum(const Roughness& roughness);
 

@@ -75,7 +75,7 @@ Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
     for (const char* key : {".young_modulus", ".poisson_ratio"}) {
       if (reader.has(body + key))
-        reader.fail(body + ".rigid", "true", fmt::format("{}{} left out beside it", body, key));
+        reader.fail(body + ".rigid", "true", fmt::format("no {}{} with it", body, key));
     }
     return {std::numeric_limits<double>::infinity(), 0.0, coating};
   }
@@ -91,7 +91,7 @@ Layer read_layer(SceneReader& reader) {
   return layer;
 }
 
-/// Which numbers each law takes is a thing to know, not a misspelling.
+/// A number of another law is not a misspelling, so the message lists the numbers of this law.
 void refuse_numbers_of_other_laws(SceneReader& reader, FrictionKind kind) {
   const std::string friction = "contact.friction";
   const std::string strength = "contact.shear_strength";
@@ -133,7 +133,7 @@ void read_torsion(SceneReader& reader, const std::string& table, Step& step,
   const auto moment = reader.find_number(keys[1]);
   const auto twist = reader.find_number(keys[2]);
   if (ratio.has_value() + moment.has_value() + twist.has_value() > 1) {
-    reader.fail(moment ? keys[1] : keys[2], "(with another torsion load beside it)",
+    reader.fail(moment ? keys[1] : keys[2], "(together with another torsion load)",
                 fmt::format("exactly one of {}", fmt::join(keys, ", ")));
   }
   if (ratio || moment || twist) step.inherited.torsion = false;
@@ -142,13 +142,13 @@ void read_torsion(SceneReader& reader, const std::string& table, Step& step,
   if (twist) torsion = Twist{*twist};
 }
 
-/// Likewise forces, or displacements in their place.
+/// Reads a tangential force or displacement; where the table has none, they are as before.
 void read_translation(SceneReader& reader, const std::string& table, Step& step) {
   reader.prefer_overridden({table + ".force", table + ".displacement"});
   const auto force = reader.find_pair(table + ".force");
   const auto displacement = reader.find_pair(table + ".displacement");
   if (force && displacement) {
-    reader.fail(table + ".displacement", "(with a force beside it)", "one of force, displacement");
+    reader.fail(table + ".displacement", "(together with a force)", "one of force, displacement");
   }
   if (force) step.force = *force;
   if (displacement) step.force = {};
@@ -174,8 +174,8 @@ void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
   read_translation(reader, table, step);
 }
 
-/// [load], or the [[step]] tables, each of which begins with the loads of the one before, the first with
-/// [load].
+/// The step of [load], or the steps of [[step]]: each starts from the loads of the step before, the first
+/// from [load].
 std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   ReadStep load;
   read_loads(reader, "load", load);

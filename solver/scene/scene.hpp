@@ -31,9 +31,9 @@ struct Material {
 
 struct LawKind;
 
-/// What lies between the bodies, beside which they are half-spaces.
+/// The layer between the two bodies, which are half-spaces.
 struct Layer {
-  const LawKind* kind = nullptr;    ///< one of law_kinds(), law_kind.hpp; null: nothing lies between them
+  const LawKind* kind = nullptr;    ///< one of law_kinds(), law_kind.hpp; null: there is no layer
   std::vector<double> values = {};  ///< of the kind's parameters, in SI units
 };
 
@@ -45,11 +45,11 @@ enum class PressureModel { solved, hertz, hertz_averaged, file };
 /// where they are dissimilar, nothing, that displacement, and also the shear's normal displacement.
 enum class Coupling { automatic, none, pressure, full };
 
-/// Which method finds the tractions.
+/// The method that finds the tractions.
 enum class Method { coulomb, projected_gradient, paper };
 
-/// How much the model leaves out: all that symmetry and the contact's size allow; nothing; the grid itself,
-/// where the scene has an exact answer.
+/// The reduction of the model: as far as symmetry and the contact's size allow; none; no grid, where the
+/// scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
 /// The load that turns the upper body about the grid's origin. Signed: a history turns back.
@@ -81,8 +81,8 @@ struct Step {
   TorsionLoad torsion = MomentRatio{0.0};
   std::array<double, 2> force{};                           ///< N, tangential, on the upper body; or else
   std::optional<std::array<double, 2>> displacement = {};  ///< m, imposed instead, since the first step
-  /// Loads that neither this step nor an earlier one sets. They are those of [load] in the first cycle and
-  /// those of the last step in later cycles.
+  /// Loads that neither this step nor an earlier one sets: the first cycle takes them from [load], later
+  /// cycles from the last step.
   struct Inherited {
     bool normal = false, torsion = false, translation = false;
   } inherited = {};
@@ -135,7 +135,7 @@ struct Scene {
   std::string name;
   std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one
   Combine combine = Combine::sum;
-  /// Nothing of the indenter lies beyond the grid, so that its contact may reach the grid's edge.
+  /// The indenter ends at the grid's edge, so its contact may reach that edge.
   bool ends_at_grid_edge = false;
   Material upper;
   Material lower;
@@ -154,21 +154,21 @@ bool is_coated(const Scene& scene);
 /// Whether the bodies are half-spaces that touch each other: without a layer between them or on them.
 bool is_bare(const Scene& scene);
 
-/// The k-th of the whole history, cycles gone through.
+/// The k-th step of the whole history, counted over all cycles.
 Step step_of(const Scene& scene, std::size_t k);
 
 /// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is
 /// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,
-/// value and what is allowed.
+/// value and allowed values.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The same of text that is no file: `file` is what messages call it and where its relative paths begin.
+/// Reads a scene from text. `file` is its name in messages; relative paths are relative to it.
 Scene read_scene_text(const std::string& text, const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// Throws InputError, naming key, value and what is allowed, for a scene that cannot be solved as it stands,
-/// whoever built it. What only the solve can find (a contact wider than the grid, loads beyond the limit) is
-/// found there. solve() calls it.
+/// Throws InputError, naming key, value and allowed values, for a scene that cannot be solved. Errors that
+/// depend on the solution (a contact wider than the grid, loads beyond the limit) are found by the solve.
+/// solve() calls validate().
 void validate(const Scene& scene);
 
 /// Words of the enumerations, as scene files and results have them.

@@ -17,7 +17,7 @@ constexpr KeyType kWord = KeyType::word;
 std::string shown(double number) { return fmt::format("{:g}", number); }
 std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}, {:g}]", pair[0], pair[1]); }
 
-/// Words for what depends on another key; the reader asks with the numbers.
+/// A range that depends on another key: its words; the reader checks the numbers.
 Range depending(const std::string& words) { return {words, nullptr}; }
 
 /// The keys of [upper], or of each [[upper.shape]].
@@ -47,7 +47,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   add_numbers([](const ShapeNumber& number) { return number.own != nullptr; });
   add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
       "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
-  add("at", "m", shown(surface.at), kFinite, "Where the shape's axis stands.", with_axis, KeyType::pair);
+  add("at", "m", shown(surface.at), kFinite, "Position of the shape's axis.", with_axis, KeyType::pair);
   add("angle", "rad", shown(surface.angle), kFinite,
       "From x1 to the shape's first axis, positive towards x2.", with_axis);
   add("file", "", kRequired, kAny,
@@ -63,7 +63,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
       depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
       "Shortest wavelength.", rough);
   add("period", "m", "4 times longest", depending("at least longest, finite"),
-      "After so much the surface repeats itself.", rough);
+      "Length after which the surface repeats itself.", rough);
 }
 
 void add_body(SettingKeys& keys, const std::string& table) {
@@ -82,7 +82,7 @@ void add_body(SettingKeys& keys, const std::string& table) {
 
 /// The keys of [layer]: a word for the law, and the law's own numbers.
 void add_layer(SettingKeys& keys) {
-  std::string meaning = "What lies between the bodies: nothing";
+  std::string meaning = "The layer between the bodies: none";
   for (const LawKind& kind : law_kinds()) meaning += fmt::format(", or {} ({})", kind.meaning, kind.word);
   keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
                   meaning + "."});
@@ -90,7 +90,7 @@ void add_layer(SettingKeys& keys) {
     for (const LawParameter& parameter : kind.parameters) {
       keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,
                       fmt::format("required with kind = \"{}\"", kind.word), kNotNegative,
-                      fmt::format("{} Known with kind = \"{}\" alone.", parameter.meaning, kind.word)});
+                      fmt::format("{} Only with kind = \"{}\".", parameter.meaning, kind.word)});
     }
   }
 }
@@ -102,16 +102,17 @@ void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
   const SettingKeys loads{
       {at + "normal", kNumber, "N", first(kRequired), kPositive,
        "Normal load; of a pressure from a file it may be left out."},
-      {at + "moment_ratio", kNumber, "", first("0 beside a force, a displacement or steps; else required"),
+      {at + "moment_ratio", kNumber, "", first("0 with a force, a displacement or steps; otherwise required"),
        kRatio, "Moment over the limit moment of this pressure and mesh. One of this and the next two."},
       {at + "moment", kNumber, "N m", first("none"), kFinite, "Moment about the grid's origin."},
       {at + "twist", kNumber, "rad", first("none"), kFinite,
-       "Twist imposed in place of the moment, since the first step: `twist_angle` of a result, whose `twist` "
+       "Imposed twist instead of a moment, counted from the first step: `twist_angle` of a result, whose "
+       "`twist` "
        "is normalised."},
       {at + "force", KeyType::pair, "N", first("[0, 0]"), kFinite,
        "Tangential force on the indenter. One of this and the next."},
       {at + "displacement", KeyType::pair, "m", first("none"), kFinite,
-       "Displacement imposed in place of the force, since the first step."}};
+       "Imposed displacement instead of a force, counted from the first step."}};
   keys.insert(keys.end(), loads.begin(), loads.end());
 }
 
@@ -124,9 +125,9 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
        "The shear that friction carries under a pressure p: mu p (coulomb); the shear strength (tresca); the "
        "lesser of the two (capped); k p^n (power)."},
       {"contact.shear_strength", kNumber, "Pa", "required with friction_law = \"tresca\" or \"capped\"",
-       kPositive, "Shear that the interface carries at most. Known with these two laws alone."},
+       kPositive, "Largest shear that the interface carries. Only for tresca and capped."},
       {"contact.friction_exponent", kNumber, "", "required with friction_law = \"power\"", kFrictionExponent,
-       "Exponent n of the pressure. Known with this law alone."},
+       "Exponent n of the pressure. Only for power."},
       {"contact.friction_map", KeyType::file, "", "\"\"", kAny,
        "Factors of the friction, one a cell: a CSV matrix with a line for each x1, or the HDF5 dataset "
        "`friction`. Empty: 1 everywhere."},
@@ -135,11 +136,11 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
        "Where the pressure comes from: solved on the same grid, Hertz's at cell centres, Hertz's averaged "
        "over each cell, a file."},
       {"contact.pressure_file", KeyType::file, "", "required with pressure = \"file\"", kAny,
-       "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
-       "\"file\" alone."},
+       "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Only with pressure = "
+       "\"file\"."},
       {"contact.coupling", kWord, "", word_of(kCouplings, scene.contact.coupling), one_of(kCouplings),
-       "For dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
-       "nothing; that displacement; also the shear's normal displacement."}};
+       "auto: the pressure's tangential displacement enters where the bodies are dissimilar; none: it is "
+       "neglected; pressure: it enters; full: the shear's normal displacement enters too."}};
   keys.insert(keys.end(), contact.begin(), contact.end());
 }
 
@@ -148,15 +149,14 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"grid.cells", KeyType::pair, "", "required; of a height map as many as its samples", kCells,
        "Cells along x1 and x2."},
       {"grid.extent", KeyType::pair, "m", "the expected contact and two cells around it", kPositive,
-       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file. The "
-       "expected contact on a bonded layer is that of the softer of layer and base alone."},
+       "Lengths of the grid's sides; not with a height map, required with a pressure from a file. The "
+       "contact expected on a bonded layer is computed with the softer of layer and base."},
       {"solver.method", kWord, "", word_of(kMethods, scene.solver.method), one_of(kMethods),
        "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
        "published."},
       {"solver.program", KeyType::file, "", "\"\"", kAny,
-       "Another program that finds pressure and tractions in place of the method: the TOML file that says "
-       "how it is started. It runs only with --allow-programs, or where the command line names it. Empty: "
-       "none."},
+       "Another program that finds pressure and tractions instead of the method: the TOML file with its "
+       "command line. It runs only with --allow-programs, or if the command line names it. Empty: none."},
       {"solver.operator", kWord, "", word_of(kOperators, scene.solver.op), one_of(kOperators),
        "Convolution by FFT, direct summation, a dense matrix: the same numbers."},
       {"solver.tolerance", kNumber, "", shown(scene.solver.tolerance), kTolerance,
@@ -164,21 +164,22 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"solver.max_iterations", kNumber, "", shown(scene.solver.max_iterations), kIterations,
        "Iterations after which a solve gives up."},
       {"solver.model", kWord, "", word_of(kModels, scene.solver.model), one_of(kModels),
-       "Leave out what symmetry and the contact's size allow; nothing; the grid itself, where the scene has "
-       "an exact answer."},
+       "auto: use symmetry and the contact's size to solve fewer cells; full: the whole grid; exact: no "
+       "grid, for a scene that has an exact answer."},
       {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.solver.cell_traction),
        one_of(kCellTractions),
-       "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
-       "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
-       "their edge."},
+       "constant: the traction is constant over each cell; smooth: the number is the value at the cell's "
+       "centre of a smooth traction, which gives smaller errors where the pressure falls to zero at the "
+       "contact's edge."},
       {"solver.substeps", kNumber, "", shown(scene.solver.substeps), kSubsteps,
-       "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
-       "what a result states as `resolved.path`."},
+       "Parts into which each step's change of load is divided; each is one implicit step. More parts reduce "
+       "the error `resolved.path` of a result."},
       {"solver.threads", kNumber, "", shown(scene.solver.threads), kThreads,
        "Threads of one solve, which change no digit. 0: one a processor where the part of the grid that is "
        "solved has many cells, 32,768 for each thread; one for each of many solves (studies, gates)."},
       {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.solver.rounding_seed)),
-       kRoundingSeeds, "0: to nearest; else every operation is rounded at random, drawn from this seed."}};
+       kRoundingSeeds,
+       "0: round to nearest; otherwise every operation is rounded at random with this seed."}};
   keys.insert(keys.end(), solver.begin(), solver.end());
 }
 
@@ -186,11 +187,11 @@ SettingKeys make_scene_keys() {
   const Scene scene;
   SettingKeys keys{{"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
                    {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
-                    "How often all steps are gone through; the limit is of steps times cycles."}};
+                    "Repetitions of all steps; steps times cycles is limited."}};
   add_shape(keys, "upper");
   keys.push_back({"upper.combine", kWord, "", word_of(kCombinations, scene.combine), one_of(kCombinations),
                   "How several shapes make one surface: their gaps add up, or each point has the nearest. "
-                  "Known with two or more tables `[[upper.shape]]` alone."});
+                  "Only with two or more tables `[[upper.shape]]`."});
   keys.push_back({"upper.ends_at_grid_edge", KeyType::flag, "", "false", kAny,
                   "Whether the body itself ends at the edge of the grid, so that its contact may reach it."});
   add_body(keys, "upper");

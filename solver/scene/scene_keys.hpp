@@ -7,7 +7,7 @@
 /// Every key and word that a scene file may have.
 namespace slipstick::solver {
 
-/// The table that read_scene() reads by. Defaults are those of Scene and Surface.
+/// The keys that read_scene() reads. Scene and Surface define their defaults.
 const SettingKeys& scene_keys();
 
 /// Every law's word, and "none" for no layer.

@@ -8,7 +8,7 @@
 #include "solver/input/setting_key.hpp"
 #include "solver/scene/surface.hpp"
 
-/// What the solver knows of each shape: one row of a table, in shape_kind.cpp.
+/// The properties of each shape: one row of the table in shape_kind.cpp.
 namespace slipstick::solver {
 
 /// A shape's word, and the formulas of its undeformed gap. Consistent units. The formulas are null where the

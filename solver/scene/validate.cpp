@@ -69,7 +69,7 @@ class Validation {
     require(table + ".angle", surface.angle, kFinite);
   }
 
-  /// An infinite modulus is that of a rigid body.
+  /// A rigid body has an infinite modulus.
   void check_material(const std::string& body, const Material& material) const {
     if (!(material.young_modulus > 0.0)) {
       refuse_(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
@@ -122,7 +122,7 @@ class Validation {
       for (const double displacement : *step.displacement)
         require(step.key + ".displacement", displacement, kFinite);
       if (step.force != std::array<double, 2>{}) {
-        refuse_(step.key + ".displacement", "(with a force beside it)", "one of force, displacement");
+        refuse_(step.key + ".displacement", "(together with a force)", "one of force, displacement");
       }
     }
   }
@@ -137,7 +137,7 @@ class Validation {
     for (const double extent : *scene_.grid.extent) require("grid.extent", extent, kPositive);
   }
 
-  /// The paper's method and projected gradients know torsion about the origin alone.
+  /// The paper's method and projected gradients solve only torsion about the origin.
   void check_method() const {
     if (scene_.solver.method == Method::coulomb) return;
     const Step& step = scene_.steps.front();

@@ -34,10 +34,10 @@ Range shortest_for(double longest, double period);
 /// A step's result stays in memory to the end: some ten kilobytes.
 inline constexpr std::size_t kMaxSteps = 100'000;
 Range cycles_of(std::size_t steps);
-/// Each takes a field over the grid.
+/// Each shape needs the memory of one field over the grid.
 inline constexpr std::size_t kMaxShapes = 1000;
 
-/// Says what is wrong, by throwing.
+/// Throws an error with key, value and allowed values.
 using Refuse =
     std::function<void(const std::string& key, const std::string& value, const std::string& allowed)>;
 void validate(const Scene& scene, const Refuse& refuse);

@@ -109,7 +109,7 @@ TEST_F(Tables, AreOverriddenByIndex) {
   EXPECT_THAT(complaint([&] { whole.fail("load.force", "7", "less"); }), HasSubstr("--set"));
 }
 
-/// A point without a digit on one side, as shells have it, is named for what it is; a name may have one.
+/// A number with no digit on one side of its point is refused by name; a text may have such a point.
 TEST_F(Tables, SayHowNumbersAreWritten) {
   for (const char* number : {".5", "-.5", "5.", "5.e-1"}) {
     SceneReader steps = reader(kSteps, {fmt::format("step[0].force={}", number)});

@@ -23,8 +23,8 @@ namespace {
 using namespace testing;
 namespace fs = std::filesystem;
 
-/// Limits the size of files while it lives, as a full disk would. Nothing may be printed meanwhile: standard
-/// output may be a file.
+/// Limits the size of files during its lifetime, as a full disk would. The test must not print meanwhile,
+/// since standard output may be a file.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -88,8 +88,8 @@ TEST_F(WholeFile, IsOldOrNewWheneverTheWriterIsKilled) {
   EXPECT_EQ(files(), 1) << "drafts of the killed are left";
 }
 
-/// The next writer takes over a killed one's draft, also before anybody has asked how that one ended, and
-/// leaves a living one's alone.
+/// The next writer reuses the draft of a killed writer, even one that is not yet waited for, and keeps off
+/// the draft of a running one.
 TEST_F(WholeFile, ADraftGoesWithItsWriterOnly) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
@@ -224,7 +224,7 @@ TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   }
 }
 
-/// HDF5 keeps the second in which a file was written, unless it is told not to.
+/// HDF5 stores the time of writing unless this is switched off.
 TEST_F(WholeFile, EqualFieldsAreEqualBytes) {
   const Grid grid{4, 2, 0.5, 0.25};
   const fs::path fields = folder_ / "fields.h5";

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bad_scene_test.py PROGRAM: scenes that are refused, with a message that says where, what and what is allowed."""
+"""bad_scene_test.py PROGRAM: refused scenes; the message names file, key, value and allowed values."""
 
 import itertools
 import sys

@@ -1,5 +1,5 @@
-// The table of a scene's keys is what the reader goes by: each key in it is read, refuses what it does not
-// allow with the table's own words, and is known with the shapes that the table names.
+// The reader agrees with the table of keys: it reads each key, refuses other values with the table's words,
+// and accepts the key with the shapes that the table names.
 
 #include "solver/scene/scene_keys.hpp"
 
@@ -77,7 +77,7 @@ Wrong wrong_for(const SettingKey& key) {
   }
 }
 
-/// Those that have defaults.
+/// Members that have defaults.
 std::string members(const Scene& scene) {
   const Surface& surface = scene.surfaces[0];
   return fmt::format(

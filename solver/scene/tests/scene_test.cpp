@@ -140,7 +140,7 @@ TEST_F(SceneFile, ARigidBodyHasNoModulus) {
   const Scene scene = read(text);
   EXPECT_TRUE(std::isinf(scene.upper.young_modulus));
   const Model model = make_model(scene);
-  EXPECT_DOUBLE_EQ(model.stress_unit, 210e9 / 2.6);  // that of the other body alone
+  EXPECT_DOUBLE_EQ(model.stress_unit, 210e9 / 2.6);  // of the elastic body
 }
 
 }  // namespace

@@ -306,8 +306,8 @@ TEST(SpheresSideBySide, ShareTheLoad) {
   EXPECT_NEAR((centre - 0.5 * distance) / shift, 1.0, 0.1);  // to (a/D)^2 and the mesh: shift is 0.08 cells
 }
 
-/// Smythe (1951), the capacity of an annular disc, which is its stiffness under a normal load over that of a
-/// point: within 0.1 % of it.
+/// The normal stiffness of an annular punch agrees within 0.1 % with the capacity of an annular disc, Smythe
+/// (1951).
 TEST(Annulus, SinksInAsItsCapacitySays) {
   constexpr double outer = 5e-4;
   constexpr double ratio = 0.6;

@@ -164,7 +164,7 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
   }
 }
 
-/// The price: a model's numbers are those of the scene to 12 digits.
+/// The cost: a model's numbers equal the scene's to 12 digits only.
 TEST(OverUnit, KeepsTwelveDigits) {
   for (const double value : {1.0, 0.1, 1.0 / 3.0, 6.02e23, -1.6e-19}) {
     EXPECT_LE(std::abs(to_dimensionless(value, 1.0) / value - 1.0), 0x1p-40);
