@@ -8,8 +8,7 @@ target_precompile_headers(slipstick_benchmarks PRIVATE ${SLIPSTICK_HEADERS} <Eig
   <benchmark/benchmark.h>)
 target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick_reference_tables
   slipstick::bench PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
-# Times stand beside errors: the exact side's against the references that the tests use, the solver's in the scenes that
-# come with the program.
+# Each time is printed with its error: of the exact side against the tests' references, of the solver in the scenes that come with the program.
 target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 
 # Counts the work that solves take: the linker puts the functions of work/work_counts.cpp in the place of those counted.
@@ -34,7 +33,7 @@ target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
 target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
 slipstick_tests(work_counts_tests SOURCES work/tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
 
-# Takes a quarter of an hour and an idle machine: run by `make bench-trust` alone.
+# Needs a quarter of an hour on an idle machine, so only `make bench-trust` runs it.
 include(tests/sleeping_operator.cmake)
 add_mutant(sleeping_operator MUTANTS ${CMAKE_CURRENT_SOURCE_DIR}/tests/sleeping_operator.cmake
   ORIGINAL slipstick_benchmarks)

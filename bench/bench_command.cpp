@@ -154,10 +154,10 @@ Exit code 0: done, nothing is slower; 1: something is; 2: it could not be judged
 
 RunCommand add_bench_command(CLI::App& app) {
   const auto request = std::make_shared<BenchRequest>();
-  CLI::App* const command = app.add_subcommand("bench", "Time everything beside the error that it buys");
-  CLI::Option* const scene = command->add_option(
-      "scene", request->scene,
-      "scene file (TOML), timed alone: methods, meshes, tolerances, direct sums against convolution");
+  CLI::App* const command = app.add_subcommand("bench", "Time methods and meshes, with the error of each");
+  CLI::Option* const scene = command->add_option("scene", request->scene,
+                                                 "scene file (TOML) to time: methods, "
+                                                 "meshes, tolerances, direct sums against convolution");
   convergence::add_set_option(*command, request->overrides, "override a key of the scene");
   command->add_option("--beside", request->beside, "files of other programs (TOML), timed on the scene too")
       ->delimiter(',')
@@ -172,7 +172,7 @@ RunCommand add_bench_command(CLI::App& app) {
       command->add_option("--against", request->against, "the same program of another build: the base");
   CLI::Option* const pair =
       command->add_option("--pair", request->pair, "two benchmarks, the second over the first")->expected(2);
-  command->add_option("--rounds", request->rounds, "repetitions of what is compared")
+  command->add_option("--rounds", request->rounds, "repetitions of each compared benchmark")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   command->add_option("--effect", request->effect, "smallest change that counts, as a part")

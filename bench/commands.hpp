@@ -13,8 +13,8 @@ namespace slipstick::bench {
 /// Runs a command that was given, see main.cpp: text for a person, the result, the exit code.
 using RunCommand = std::function<int(std::ostream&, nlohmann::ordered_json&)>;
 
-/// Adds `bench`: times everything beside the error that it buys and draws it; or two builds or two methods
-/// against each other. The result is timings in Google Benchmark's JSON.
+/// Adds `bench`: times methods and meshes with the error of each and draws the figure, or compares two builds
+/// or two methods. The result is timings in Google Benchmark's JSON.
 RunCommand add_bench_command(CLI::App& app);
 
 /// Adds `compare`. Exit code 0: nothing is slower, 1: something is, 2: it could not be judged.

@@ -17,14 +17,14 @@ struct ProgramBenchmark {
   std::string benchmark;
 };
 
-/// The base and what is compared with it, run one right after the other.
+/// The base program and the compared one, run in immediate succession.
 struct InterleavedPair {
   std::string name;  ///< under which they are compared
   std::array<ProgramBenchmark, 2> sides;
 };
 
-/// Every benchmark that fits the filter in either program, by its name: those in one only have nothing beside
-/// them.
+/// Every benchmark that fits the filter in either program, by its name; a benchmark of one program only has
+/// no partner.
 std::vector<InterleavedPair> two_builds(const std::filesystem::path& base, const std::filesystem::path& now,
                                         const std::string& filter);
 
@@ -37,8 +37,8 @@ std::vector<InterleavedPair> two_methods(const std::filesystem::path& program, c
 /// the same "session" in their context.
 using SessionFiles = std::array<nlohmann::ordered_json, 2>;
 
-/// Runs all pairs, `rounds` times, every other time in the reverse order (AB, BA, AB...), so that what else
-/// the machine does falls on both sides. Says on standard error how far it is.
+/// Runs all pairs, `rounds` times, every other time in the reverse order (AB, BA, AB...), so that other load
+/// of the machine affects both. Prints its progress on standard error.
 SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, const RunLength& length = {});
 
 struct ABRunResult {
@@ -46,8 +46,8 @@ struct ABRunResult {
   SessionFiles files;  ///< the first session's
 };
 
-/// Runs a session, and a second one with twice the rounds of what is suspicious then: only what both say
-/// counts.
+/// Runs a session, and a second one with twice the rounds for the benchmarks that look slower: a verdict
+/// counts if both agree.
 ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules = {},
                    const RunLength& length = {});
 

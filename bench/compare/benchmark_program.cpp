@@ -24,7 +24,7 @@ using namespace convergence;
 /// A path that is not looked up on PATH.
 std::string program_word(const fs::path& program) { return fs::absolute(program).string(); }
 
-/// The name as that of a file: readable, and its own.
+/// A readable and unique file name for the benchmark.
 std::string file_name(const std::string& benchmark) {
   std::string name = benchmark;
   std::replace_if(

@@ -10,18 +10,17 @@ namespace slipstick::bench {
 
 /// How long one run of a benchmark lasts.
 struct RunLength {
-  double seconds = 0.05;  ///< at least, of what is timed
+  double seconds = 0.05;  ///< least timed duration
   int repetitions = 1;
   /// See convergence::ProgramOptions: no run outlasts who started it.
   std::filesystem::path tied_by = {};
 };
 
-/// What --benchmark_filter takes to run these benchmarks and no other.
+/// The --benchmark_filter that runs exactly these benchmarks.
 std::string benchmark_filter(const std::vector<std::string>& names);
 
 /// The benchmarks of a program of Google Benchmark whose names fit a regular expression (POSIX extended;
-/// empty: those that it runs by itself), in its order. Throws InputError where that is no such program, or
-/// has none.
+/// empty: the program's default), in its order. Throws InputError for a program without benchmarks.
 std::vector<std::string> list_benchmarks(const std::filesystem::path& program, const std::string& filter);
 
 /// Runs one benchmark in a process of its own; what it says, in Google Benchmark's JSON. Throws

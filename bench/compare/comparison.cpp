@@ -100,7 +100,7 @@ Finding judge(const ComparedBenchmark& benchmark, bool could_show, const Compari
   return benchmark.ratio < 1.0 + rules.effect ? Finding::same : Finding::undecided;
 }
 
-/// A remark where the numbers alone could be misread.
+/// A remark on numbers that could be misread.
 std::string remark_on(const ComparedBenchmark& benchmark, std::size_t enough, const ComparisonRules& rules) {
   if (benchmark.finding == Finding::too_few) {
     return fmt::format("no change can be significant; {} repetitions in each file would do", enough);

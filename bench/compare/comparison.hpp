@@ -17,10 +17,9 @@ struct ComparisonRules {
       false;  ///< Google Benchmark may say that it was built without NDEBUG, as Debian's does
 };
 
-/// The verdict on one benchmark, first those that times give. Undecided: as much slower as counts, but not
-/// significantly so. Too few: its repetitions could show no change, however large. Failed: in the new file
-/// only. Not timed: it failed in the base, skipped itself, or has no repetitions. Not judged: an obstacle
-/// forbids it.
+/// The verdict on one benchmark. Undecided: slower by more than the threshold, but not significantly. Too
+/// few: this number of repetitions cannot prove any change. Failed: in the new file only. Not timed: it
+/// failed in the base, skipped itself, or has no repetitions. Not judged: an obstacle forbids it.
 enum class Finding {
   same,
   slower,
@@ -37,7 +36,7 @@ std::string to_string(Finding finding);
 bool is_failure(Finding finding);  ///< slower or failed
 bool is_fine(Finding finding);     ///< same or quicker
 
-/// One benchmark of either file. What does not exist is NaN, as is an interval of too small a sample.
+/// One benchmark of either file. Missing numbers, and the interval of too small a sample, are NaN.
 struct ComparedBenchmark {
   std::string name;
   Finding finding = Finding::not_judged;
@@ -50,7 +49,7 @@ struct ComparedBenchmark {
       0.0;  ///< of a ratio of one or below (above, where it is below one), with Holm's correction
   std::size_t base_repetitions = 0;
   std::size_t new_repetitions = 0;
-  std::string remark;  ///< what a reader must know beside the numbers; empty: nothing
+  std::string remark;  ///< a remark on the numbers; may be empty
 };
 
 struct Comparison {

@@ -14,8 +14,8 @@ struct ComparisonReport {
   std::string base;  ///< the files' names
   std::string now;
   ComparisonRules rules;
-  Comparison comparison;             ///< with what the second run confirmed, where there is one
-  std::optional<Comparison> second;  ///< of the suspicious benchmarks alone
+  Comparison comparison;             ///< includes the verdicts of the second run, if any
+  std::optional<Comparison> second;  ///< of the benchmarks that looked slower
 };
 
 /// For a person: a table, the worst first, why times could not be judged, and the counts.
@@ -24,8 +24,8 @@ std::string comparison_text(const ComparisonReport& report);
 /// The same as Markdown, shorter than kMaxMarkdown bytes: what does not fit is counted.
 std::string comparison_markdown(const ComparisonReport& report);
 
-/// JUnit's XML, as CI servers read it: a case a benchmark, and one for each obstacle. What is slower or
-/// failed is a failure, what could not be judged an error.
+/// JUnit's XML, as CI servers read it: one case for each benchmark and each obstacle. A slower or failed
+/// benchmark is a failure, one that could not be judged an error.
 std::string comparison_junit(const ComparisonReport& report);
 
 /// Every number, in seconds.

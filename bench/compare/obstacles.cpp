@@ -61,12 +61,12 @@ std::string load(const Timings& timings) {
   const double foreign = context.load_average - own;
   if (foreign <= kForeignLoad * context.cpus) return "";
   return fmt::format(
-      "{}: the machine was loaded when it began (load average {:.2f} on {} processors, of which it explains "
+      "{}: the machine was loaded when it began (load average {:.2f} on {} processors; the program explains "
       "{}); run it again when the others are done",
       name(timings), context.load_average, context.cpus, own);
 }
 
-/// The median of clock over processor time; 1 where the processor's time is not that of the timed work.
+/// The median of clock over processor time; 1 where the processor time includes other work.
 double waiting_factor(const TimedBenchmark& benchmark) {
   const bool brings_own_time = benchmark.name.find("/manual_time") != std::string::npos ||
                                benchmark.name.find("/process_time") != std::string::npos;

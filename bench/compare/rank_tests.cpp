@@ -47,7 +47,7 @@ std::size_t sum(std::span<const std::size_t> ranks) {
 /// The distribution of the sum of ranks that chance picks, all choices equally likely.
 class RankSum {
  public:
-  /// picked: choices of so many; none: of any number.
+  /// picked: choices of this number; none: of any number.
   RankSum(std::span<const std::size_t> ranks, std::optional<std::size_t> picked) {
     const auto count = static_cast<double>(ranks.size());
     const double total = static_cast<double>(sum(ranks));
@@ -108,9 +108,9 @@ class RankSum {
   double variance_ = 0.0;
 };
 
-/// The chances of the sum of ranks, observed, and the estimate of which the sorted means or differences are
-/// the median. As many of those lie beyond either end of the interval as the sum, from its least value on,
-/// stays in the tail if there are no ties.
+/// The distribution of the rank sum, its observed value, and the sorted means or differences, whose median is
+/// the estimate. Beyond either end of the interval lie as many of them as the rank sum has values in the
+/// tail, if there are no ties.
 Shift shift_of(std::vector<double> values, const RankSum& chance, std::size_t observed,
                const RankSum& without_ties, std::size_t least) {
   std::ranges::sort(values);

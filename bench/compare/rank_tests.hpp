@@ -26,7 +26,7 @@ Shift signed_rank_shift(std::span<const double> differences);
 Shift rank_sum_shift(std::span<const double> base, std::span<const double> now);
 inline constexpr std::size_t kMaxCounted = 60;
 
-/// The smallest chance that so many numbers can give at all: 2^-n; one in all choices of n of n + m.
+/// The smallest possible chance for this number of values: 2^-n; one in all choices of n of n + m.
 double least_signed_rank_chance(std::size_t n);
 double least_rank_sum_chance(std::size_t n, std::size_t m);
 

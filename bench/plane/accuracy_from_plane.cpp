@@ -43,10 +43,10 @@ std::map<double, Loads> timed_meshes(const Json& plane) {
   return meshes;
 }
 
-/// The plane's name of what an accuracy is asked of.
+/// The plane's name of an accuracy's quantity.
 std::string plane_quantity(const std::string& word) { return word == "traction" ? "traction_l2" : word; }
 
-/// Root mean square over the grids of what the iteration changes.
+/// Root mean square, over the grids, of the iteration's change.
 double iteration_error(const Json& loose, const Json& tight) {
   double sum = 0.0;
   for (std::size_t i = 0; i < loose.size(); ++i) {
@@ -115,7 +115,7 @@ MeasuredMesh measured_mesh(const Loads& loads, double application_seconds) {
   return mesh;
 }
 
-/// Errors no smaller than those of finer meshes; tolerances no looser than those of coarser ones.
+/// Makes errors fall and tolerances tighten from mesh to finer mesh.
 void make_monotone(std::vector<MeasuredMesh>& meshes) {
   for (std::size_t q = 0; q < convergence::kAccuracies; ++q) {
     for (std::size_t i = meshes.size() - 1; i > 0; --i) {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-/// Which of many ways to an answer are worth taking: by the seconds they take and the error they leave.
+/// The ways to an answer that are optimal in time and error (the Pareto front).
 namespace slipstick::bench {
 
-/// One way. What is not a number is never as quick or as good as another.
+/// One way. A NaN is worse than any number.
 struct Way {
   double seconds = 0.0;
   double error = 0.0;

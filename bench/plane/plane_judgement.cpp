@@ -11,7 +11,7 @@
 namespace slipstick::bench {
 namespace {
 
-/// Errors that the table of times asks for.
+/// Errors of the rows of the table of times.
 const std::vector<double> kWanted{1e-2, 1e-3, 1e-4, 1e-5};
 
 const std::string kAnyMethod = "any";

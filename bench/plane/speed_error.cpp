@@ -24,7 +24,7 @@ using convergence::set_missing;
 using convergence::set_number;
 using solver::Index;
 
-/// Quantities of the plane, and what a person calls them.
+/// Quantities of the plane, and their names in text.
 const std::vector<std::pair<std::string, std::string>> kQuantities{
     {"twist", "twist"},
     {"traction_l1", "traction, mean (L1)"},

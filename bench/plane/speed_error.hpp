@@ -19,7 +19,7 @@ using convergence::Json;
 
 struct PlaneOptions {
   std::filesystem::path scene;   ///< the paper's, whose loads and choices are set
-  std::filesystem::path output;  ///< folder that keeps finished points: the same command goes on from there
+  std::filesystem::path output;  ///< folder of finished points, from which the same command continues
   bool quick = false;
   std::function<void(const std::string& point)> progress = {};  ///< called after each point
 };
@@ -31,7 +31,7 @@ Json measure_plane(const PlaneOptions& options);
 /// Points that plane holds.
 std::size_t plane_size(bool quick);
 
-/// One moment ratio's points, those that are in the output folder from there, and the exact side.
+/// The points of one moment ratio (finished ones are read from the output folder) and the exact side.
 Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design);
 
 /// One point: errors on several grids, seconds on the first, unless the result is wrong.

@@ -94,7 +94,7 @@ std::optional<Growth> theory_of(const std::string& family) {
   return {};
 }
 
-/// Beside the exponent what theory's growth has between the same sizes.
+/// Adds the exponent of theory's growth between the same sizes.
 Json power_law_json(const PowerLaw& law, std::optional<Growth> theory) {
   Json json;
   set_number(json, "exponent", law.exponent, law.why_not);

@@ -7,8 +7,8 @@
 
 namespace slipstick::bench {
 
-/// All of this of the benchmarks whose names hold "cells:N" (what is left of the name is the family's): rows,
-/// power laws, growths beside what theory says, and where dcfft overtakes the other operators.
+/// Results of the benchmarks whose names have "cells:N" (the rest of the name is the family): rows, power
+/// laws, measured and theoretical growth, and the size from which dcfft is quicker than the other operators.
 nlohmann::ordered_json scaling_json(const Timings& timings);
 
 /// The crossovers for a person.

@@ -1,6 +1,6 @@
 // The exact side: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
-// time stands beside the worst error over all proven references (error_eps, in units of 2.2e-16, and what is
-// allowed there: 8, or 4 times what an ulp of the input costs).
+// time is printed with the worst error over all proven references (error_eps, in units of 2.2e-16) and the
+// allowed error: 8, or 4 times the change by an ulp of the input.
 
 #include <fmt/core.h>
 
@@ -27,7 +27,8 @@ Inputs spread() {
   return inputs;
 }
 
-/// The worst error of a quantity over the certified table and the hardest inputs known, by what is allowed.
+/// The worst ratio of error to allowed error of a quantity, over the certified table and the hardest inputs
+/// known.
 Prepared judged(const std::string& profile, const std::string& given, const std::string& quantity) {
   analytic::testing::Replay worst{.error = 0, .allowed = analytic::testing::kAllowed};
   for (const auto& row : analytic::testing::all_references()) {

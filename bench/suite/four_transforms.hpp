@@ -4,8 +4,8 @@
 
 namespace slipstick::bench {
 
-/// Two forward and two backward transforms of padded fields, by FFTW alone: what a convolution that makes
-/// nothing of its padding cannot go below. The unit in which times on different machines can be compared.
+/// Two forward and two backward transforms of padded fields, by plain FFTW: the least time of a convolution
+/// that does not exploit its padding, and the unit in which times of different machines can be compared.
 class FourTransforms {
  public:
   explicit FourTransforms(solver::Index cells)

@@ -1,4 +1,4 @@
-// Influence coefficients of the tangential kernel at all offsets of a grid, beside their error against
+// Influence coefficients of the tangential kernel at all offsets of a grid, with their error against
 // Gauss-Legendre quadrature of the point loads over the cells.
 
 #include <array>
@@ -31,7 +31,7 @@ std::array<double, 3> point_load(const solver::ElasticPair& bodies, double x, do
   return {factor * (direct + turned * x * x), factor * turned * x * y, factor * (direct + turned * y * y)};
 }
 
-/// The unit cell's coefficients at an offset of two cells or more, where 16 points leave rounding alone.
+/// The unit cell's coefficients at an offset of two cells or more, where 16 points are exact to rounding.
 double by_quadrature(const solver::ElasticPair& bodies, std::size_t component, double k1, double k2) {
   static const analytic::gsl::GaussRule rule(16);
   const auto over_x = [&](double y) {

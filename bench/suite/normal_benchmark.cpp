@@ -1,4 +1,4 @@
-// The pressure of the paper's sphere, beside its errors against Hertz's.
+// The pressure of the paper's sphere, with its errors against Hertz's solution.
 
 #include <memory>
 

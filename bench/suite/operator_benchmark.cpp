@@ -1,5 +1,5 @@
-// The tangential operator in each of its forms: setting it up, and one application, beside the error against
-// another form and the memory held. Bare padded transforms bound dcfft's time from below.
+// The tangential operator in each of its forms: its construction and one application, with the error against
+// another form and the memory used. Bare padded transforms bound dcfft's time from below.
 
 #include <algorithm>
 #include <array>

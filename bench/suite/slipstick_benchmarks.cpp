@@ -1,5 +1,5 @@
-// The program. Names read family/variant/cells:N; each time stands beside the error that it buys, and what is
-// wrong is reported and not timed. Benchmarks named long/... run only where a filter asks for them.
+// The program. Names read family/variant/cells:N; each time is printed with the error of its result, and
+// wrong results are reported and not timed. Benchmarks named long/... run only if a filter selects them.
 
 #include <algorithm>
 #include <array>

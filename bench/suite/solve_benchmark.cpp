@@ -1,6 +1,6 @@
-// Whole solves of the paper's scene, beside the errors that they buy: by each method, to several tolerances,
-// with nothing left out of the model, along a history and with a force beside the torsion. Two of them are
-// compared in interleaved pairs by `slipstick bench --pair A B`.
+// Whole solves of the paper's scene, with their errors: by each method, to several tolerances, on the whole
+// grid, along a history, and with a force in addition to the torsion. Two of them are compared in interleaved
+// pairs by `slipstick bench --pair A B`.
 
 #include <fmt/core.h>
 
@@ -53,7 +53,7 @@ Prepared whole_solve(const Scene& scene) {
           .timing = repeated([scene] { benchmark::DoNotOptimize(solver::solve(scene)); })};
 }
 
-/// A force leaves no symmetry to use, and there is no exact answer: the certificate stands for the errors.
+/// With a force there is no symmetry and no exact answer, so the certificate bounds the error.
 Prepared with_force(const Load& load) {
   constexpr double kAllowedLoadError = 1e-9;  // relative: rounding of sums over the contact
   Scene scene = load.scene();

@@ -46,7 +46,7 @@ LONG_KEY = "a" + 32 * ' . "a b"'  # of 33 parts
 LONG = "a key of more than 32 parts; allowed: 32"
 GIVEN = ("solve", "sphere.toml", "--set", "contact.pressure=file", "--set", f"grid.extent=[{EXTENT},{EXTENT}]",
          "--set", "grid.cells=[8,8]", "--set")
-# What is read, and by which command.
+# Each kind of file, and the command that reads it.
 READERS = {
     "scene.toml": (SHORT_SCENE, ("solve", "scene.toml")),
     "study.toml": (STUDY, ("study", "study.toml", "--output", "runs")),
@@ -74,7 +74,7 @@ def second_row(row):
     return "\n".join([*lines[:2], row, *lines[3:]]) + "\n"
 
 
-# What is wrong with a text, and what the complaint names beside the file.
+# A defect of a text, and the word that the message must have in addition to the file.
 DAMAGES = [
     *(("scene.toml", changed(SHORT_SCENE, old, new), says) for old, new, *says in (
         ("0.018", "nan", "upper.radius = nan", "positive"),
@@ -184,7 +184,7 @@ class HostileInput(ProgramTest):
         return Path(name).read_bytes()
 
     def ends(self, name):
-        """The exit code, and what is said with it."""
+        """The exit code and the output."""
         end = subprocess.run([PROGRAM, *READERS[name][1]], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
         return end.returncode, end.stdout.decode(errors="replace")
 
@@ -209,7 +209,7 @@ class HostileInput(ProgramTest):
             os.rmdir(name)
             os.mkfifo(name)
             self.refused(name, "a pipe without a writer")
-            # No one can read a process's memory from its first address on.
+            # The first address of a process's memory cannot be read.
             for target, what in (("/dev/zero", "a device"), (name, "a link to itself"),
                                  ("/proc/self/mem", "an error while reading")):
                 os.remove(name)
@@ -311,7 +311,7 @@ class HostileInput(ProgramTest):
             self.run_program("solve", "scene.toml", code=2, says=("scene.toml:2", LONG))
 
     def test_no_text_reaches_the_terminal_as_commands(self):
-        """A terminal obeys what stands behind an escape character."""
+        """A terminal executes text after an escape character."""
         self.write("scene.toml", changed(SHORT_SCENE, '"sphere"', '"\\u001b]0;title\\u0007"'))
         said = self.run_program("solve", "scene.toml", code=2, says="\\x1b]0;title")
         self.assertNotIn("\x1b", said)

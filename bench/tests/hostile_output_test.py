@@ -56,7 +56,7 @@ class HostileOutput(ProgramTest):
         return end.returncode, end.stdout.decode(errors="replace"), end.stderr.decode(errors="replace")
 
     def test_reports_for_ci_are_xml_whatever_the_result_holds(self):
-        """300 mutations of a result and of timings: each report parses, and holds what the program refused."""
+        """300 mutations of a result and of timings: each report parses and contains the refused text."""
         numbers = random.Random(SEED)
         result = json.dumps({"status": "failed", "message": "caf\u00e9 <&>\"'", "a": [1, {"b": 2}]}).encode()
         timings = json.dumps({"context": {"num_cpus": 2}, "benchmarks": [
@@ -172,7 +172,7 @@ class HostileOutput(ProgramTest):
         self.assertEqual(len(list(Path("runs").glob("*/mine"))), 2)
 
     def test_a_killed_figure_leaves_no_fields(self):
-        """Killed while Python waits in the middle of it; the process alone, and all of its group."""
+        """Killed while Python waits in the middle of it; only the process, or all of its group."""
         os.mkdir("python")
         self.write("python/sitecustomize.py", "import time\ntime.sleep(600)\n")
         for kill in (os.kill, os.killpg):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_bench_test.py PROGRAM: `slipstick bench` as users run it, on made programs: exit codes, and what is written
+"""program_bench_test.py PROGRAM: `slipstick bench` as users run it, on made programs: exit codes and output written
 where."""
 
 import json

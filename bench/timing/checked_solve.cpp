@@ -17,8 +17,8 @@ using solver::Scene;
 /// - of the tractions 1.1 over the cells and the moment ratio, since their error sits at the edges and is the
 ///   same at any load. A looser tolerance adds its root, as the gap bounds their error's square;
 /// - of the twist 2.4 over the squared cells, and where slip ring or stick area are a few cells wide the next
-///   order besides. With Hertz's pressure taken at the centres it is that of the contact's area, counted in
-///   cells. A looser tolerance adds four times itself, or its root by the paper's method, which has no such
+/// order too. With Hertz's pressure taken at the centres it is the error of the contact's area, counted in
+/// cells. A looser tolerance adds four times itself, or its root by the paper's method, which has no such
 ///   bound.
 constexpr double kTractionErrorTimesCells = 2.2;
 constexpr double kTwistErrorTimesCellsSquared = 5.0;

@@ -60,7 +60,7 @@ class Reader {
   int whole(const std::string& key, int otherwise) const {
     return value(key, otherwise, &Json::is_number_integer, "a whole number");
   }
-  /// NaN for what is null.
+  /// NaN for null.
   double number(const std::string& key) const {
     if (has(key) && object_.at(key).is_null()) return std::numeric_limits<double>::quiet_NaN();
     return value(key, std::numeric_limits<double>::quiet_NaN(), &Json::is_number, "a number");

@@ -18,12 +18,12 @@ struct Timing {
   double cpu = 0.0;
 };
 
-/// One benchmark of a file: its repetitions in their order; of files that hold aggregates alone none.
+/// One benchmark of a file: its repetitions in their order; none in files of aggregates only.
 struct TimedBenchmark {
   std::string name;  ///< run_name: with its arguments, without the aggregate; the second of a name has " #2"
   int threads = 1;   ///< that Google Benchmark ran it in
   std::vector<Timing> timings;
-  std::map<std::string, double> counters;  ///< of the last repetition; those that are not finite are left out
+  std::map<std::string, double> counters;  ///< of the last repetition; only finite values
   std::string error;                       ///< why it failed, or which time is none; empty: it did not
   std::string skipped;                     ///< why it left itself out, which is no failure; empty: it did not
 };
@@ -56,16 +56,15 @@ const TimedBenchmark* find(const Timings& timings, const std::string& name);
 /// Whether a benchmark has times that can be judged: repetitions, each of a valid time.
 bool has_times(const TimedBenchmark& benchmark);
 
-/// Reads what versions 1.5 to 1.9 write; a row that does not say what it is counts as a repetition. Throws
-/// InputError naming the file, and the key where there is one, for what is no such file or holds no
-/// benchmark.
+/// Reads what versions 1.5 to 1.9 write; a row without a type is a repetition. Throws InputError with file
+/// and key for another file or one without benchmarks.
 Timings read_timings(const std::filesystem::path& file);
 
-/// The JSON that a program of Google Benchmark wrote, numbers that are not finite null. Throws InputError
-/// naming the source for what is none.
+/// The JSON that a program of Google Benchmark wrote, infinities and NaN as null. Throws InputError with the
+/// source for any other text.
 nlohmann::ordered_json parse_benchmark_json(const std::string& text, const std::string& source);
 
-/// The same of a text; `source` stands for the file in messages.
+/// The same of a text; messages call it `file`.
 Timings parse_timings(const std::string& text, const std::string& source);
 
 }  // namespace slipstick::bench

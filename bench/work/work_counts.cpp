@@ -10,7 +10,7 @@
 namespace slipstick::bench {
 namespace {
 
-/// The counts so far. Allocations: only those that are not the program's, as negative numbers.
+/// The counts so far. Allocations of the counting itself only, as negative numbers.
 WorkCounts counted;
 
 /// Points that each plan transforms. A plan that is destroyed may leave its address to another.

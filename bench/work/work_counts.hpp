@@ -9,13 +9,12 @@ struct WorkCounts {
   long transforms = 0;          ///< calls of FFTW's functions that execute a plan
   long transformed_points = 0;  ///< lengths of all lines, or areas of all planes, that those transform
   long allocations = 0;      ///< by operator new, by malloc and its like, by FFTW's functions that allocate
-  long allocated_bytes = 0;  ///< as asked for, what was freed again among them
+  long allocated_bytes = 0;  ///< requested bytes, including memory that was freed again
   long kernel_evaluations = 0;  ///< cells over which Boussinesq's and Cerruti's solutions were integrated
 };
 
-/// Counts of this program so far; of one that uses a single thread. The linker's --wrap puts counting
-/// functions in the place of those that are counted, in all of the program but not in shared libraries, see
-/// CMakeLists.txt.
+/// Counts of this program so far; for one thread only. The linker's --wrap replaces the counted functions by
+/// counting ones in the program, not in shared libraries; see CMakeLists.txt.
 WorkCounts work_counts();
 
 /// The work between two counts.

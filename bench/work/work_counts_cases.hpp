@@ -10,8 +10,9 @@ namespace slipstick::bench {
 
 /// The work that a solve reports; zeros for a case that is no solve.
 struct SolveWork {
-  double applications = 0.0;           ///< of the tangential operator, of all grids in those of the finest
-  double pressure_applications = 0.0;  ///< of the normal operator, likewise
+  double applications =
+      0.0;  ///< of the tangential operator, all grids converted to applications on the finest
+  double pressure_applications = 0.0;  ///< of the normal operator, converted in the same way
   int iterations = 0;
 };
 

@@ -23,7 +23,7 @@ constexpr const char* kCounted = "*do_counted_work*";
 
 [[gnu::noinline]] void do_counted_work(const std::function<SolveWork()>& work) { work(); }
 
-/// "(3) /lib/libm.so.6" names object 3, "(3)" alone is what it was named before.
+/// "(3) /lib/libm.so.6" names object 3, a later "(3)" refers to that name.
 std::string object_name(const std::string& text, std::map<std::string, std::string>& names) {
   const std::size_t close = text.find(')');
   if (!text.starts_with('(') || close == std::string::npos) return text;

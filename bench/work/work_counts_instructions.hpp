@@ -17,11 +17,11 @@ using Instructions = std::map<std::string, long>;
 /// where the parts do not add up to the total that it states.
 Instructions read_callgrind(const std::filesystem::path& file);
 
-/// Does the work of a case once; what it prepares is outside of what run_callgrind() counts.
+/// Does the work of a case once; run_callgrind() does not count its preparation.
 void do_case(const WorkCase& work_case);
 
 /// Runs `PROGRAM --do CASE` for each case under callgrind, as many at a time as there are processors.
-/// Nothing where there is no valgrind. Throws std::runtime_error where a run fails.
+/// Returns none without valgrind. Throws std::runtime_error where a run fails.
 std::optional<std::map<std::string, Instructions>> run_callgrind(const std::filesystem::path& program,
                                                                  const std::vector<WorkCase>& cases);
 

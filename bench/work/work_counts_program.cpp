@@ -1,4 +1,4 @@
-// Prints how much work solves and their parts take, counted: a JSON file that gates look at.
+// Counts the work of solves and their parts and prints it as JSON, which gates read.
 
 #include <fmt/core.h>
 
@@ -111,10 +111,10 @@ int main(int argc, char** argv) {
   CLI::App app{"Counts the work that solves and their parts take"};
   app.add_option("--json", options.json, "write the counts to this file (- is stdout)")
       ->capture_default_str();
-  app.add_option("--only", options.only, "these cases alone");
+  app.add_option("--only", options.only, "only these cases");
   app.add_flag("--instructions", options.instructions, "count instructions too, by valgrind's callgrind");
   app.add_option("--do", options.to_do,
-                 "do this case's work once and count nothing, for valgrind to look at");
+                 "do this case's work once without counting, to be run under valgrind");
   app.footer("Example:\n  slipstick_work --instructions --json work.json");
   CLI11_PARSE(app, argc, argv);
   try {

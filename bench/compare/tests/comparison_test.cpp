@@ -1,4 +1,4 @@
-// Two runs compared: what counts as slower, and what cannot be judged.
+// Comparison of two runs: slower benchmarks, and benchmarks that cannot be judged.
 
 #include <gmock/gmock.h>
 
@@ -14,7 +14,7 @@ using namespace testing;
 
 constexpr std::size_t kRepetitions = 10;
 
-/// Both files have `others` steady benchmarks beside those given.
+/// Both files have `others` steady benchmarks in addition to the given ones.
 TwoTimings run_of(const std::vector<TimedBenchmark>& base, const std::vector<TimedBenchmark>& now,
                   int others = 3) {
   TwoTimings run{file_of("base.json", base), file_of("new.json", now)};
@@ -179,7 +179,7 @@ TEST(Comparison, RulesThatMeanNothingAreRefused) {
 
 using Change = std::function<void(TwoTimings&)>;
 
-/// The obstacle after a change to the files, one of which is slower by half; empty: there is none.
+/// The obstacle after a change to the files, one of which is slower by half; empty: none.
 std::string obstacle(const Change& change, const ComparisonRules& rules = {}) {
   TwoTimings run = changed(1.5);
   change(run);

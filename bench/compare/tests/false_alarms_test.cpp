@@ -16,7 +16,7 @@ constexpr std::size_t kUnpaired = 10;
 /// Wilder than a quiet server: times in turn, while the speed of the machine wanders.
 constexpr Noise kDrifting{.scatter = 0.03, .outliers = 0.05, .outlier = 1.3, .drift = 0.05};
 
-/// Exit codes of a first run alone, and after the second run of the suspicious benchmarks.
+/// Exit codes after the first run, and after the second run of the benchmarks that looked slower.
 struct Verdicts {
   int first;
   int confirmed;
@@ -57,8 +57,8 @@ TEST(FalseAlarms, NoneOfABuildAgainstItself) {
   expect_no_alarm([&] { return draw(generator, kBenchmarks, kUnpaired, false, {}); });
 }
 
-// Were every change to count, chance alone would speak, and it may as often as the level says: of 400 runs at
-// 5 % at most 20, and 33 within three standard deviations; not never, either.
+// If every change counted, false alarms would occur at the level of the test: of 400 runs at 5 % 20 are
+// expected, 33 is three standard deviations more; some must occur.
 TEST(FalseAlarms, AsOftenAsTheLevelSaysWhereEveryChangeCounts) {
   const ComparisonRules rules{.effect = 1e-9, .level = 0.05};
   std::mt19937_64 generator(13);
@@ -75,8 +75,8 @@ TEST(FalseAlarms, AsOftenAsTheLevelSaysWhereEveryChangeCounts) {
 /// As on an idle machine, run in turn while its speed wanders.
 constexpr Noise kIdle{.scatter = 0.02, .outliers = 0.02, .outlier = 1.3, .drift = 0.05};
 
-// Among 30 benchmarks the first run alone does not always prove it, but always finds it suspicious: what the
-// second run proves then.
+// Among 30 benchmarks the first run does not always prove the slowdown, but always repeats the benchmark, and
+// the second run proves it.
 TEST(Regressions, FifteenPercentIsFoundEveryTime) {
   struct Case {
     bool paired;

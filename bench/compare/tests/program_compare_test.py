@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_compare_test.py PROGRAM: `slipstick compare` as users run it: exit codes, and what is written where."""
+"""program_compare_test.py PROGRAM: `slipstick compare` as users run it: exit codes and output."""
 
 import json
 import random
@@ -32,7 +32,7 @@ class ProgramCompare(ProgramTest):
         return self.write(name, json.dumps({"context": {**MACHINE, **machine}, "benchmarks": rows}))
 
     def two(self, name, factor, seed):
-        """Two benchmarks, the first as many times slower as is asked for."""
+        """Two benchmarks, the first slower by the given factor."""
         return self.timings(name, steady("apply/dcfft/64", factor * 61.2e-3, seed),
                             steady("apply|(direct)/8", 1e-6, seed + 1))
 

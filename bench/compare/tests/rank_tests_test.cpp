@@ -88,7 +88,7 @@ TEST(RankSum, CountsAsTheRecurrenceDoes) {
   }
 }
 
-// By hand: mid-ranks 1, 2.5, 2.5, 4, of which two may sum to 3.5 (twice), 5 (twice) and 6.5 (twice).
+// By hand: mid-ranks 1, 2.5, 2.5, 4, pairs sum to 3.5 (twice), 5 (twice) and 6.5 (twice).
 TEST(RankSum, CountsTiesAsTheyAre) {
   const Shift shift = rank_sum_shift(std::vector{1.0, 2.0}, std::vector{2.0, 3.0});
   EXPECT_DOUBLE_EQ(shift.p_positive, 2.0 / 6.0);
@@ -133,7 +133,7 @@ std::vector<double> counted_signed_ranks(std::size_t n) {
 // Tails of the sums are thinner than normal ones: beyond counting, chances are up to a fifth too large, which
 // is the safe side.
 TEST(RankTests, TakeTheNormalDistributionBeyondCounting) {
-  std::vector<std::pair<double, double>> cases;  // what is found, and what is exact
+  std::vector<std::pair<double, double>> cases;  // found and exact values
   const int n = 31;
   for (const int u : {481, 420, 360, 300, 262}) {
     const Shift shift = shift_with(static_cast<std::size_t>(u), 31, 31);

@@ -48,7 +48,7 @@ TEST(PlaneDesign, TriesEachChoiceSomewhere) {
   }
 }
 
-/// The error of a point is the root mean square of what single solves give.
+/// The error of a point is the root mean square of the errors of single solves.
 TEST(PlanePoint, HasTheErrorsOfItsGrids) {
   const PlaneChoice choice{.cells = 24};
   const Json point = bench::measure_point(kPaper, 0.9, choice);
@@ -155,7 +155,7 @@ TEST(PlaneJudgement, FindsEnvelopeTimesAndWhatIsNotTimed) {
   EXPECT_THAT(bench::times_text(plane), HasSubstr("1e-03      4 s  1e-04        -"));
 }
 
-// The quickest by its median is neither that of the least low end nor that of the least high one.
+// The choice with the least median differs from the choices with the least lower and upper ends.
 TEST(PlaneJudgement, GoesByMedians) {
   const Json plane = judged_plane({made_point("coulomb", 64, 1e-3, 0.5, 2.0, 2.1),
                                    made_point("paper", 64, 1e-3, 1.0, 1.5, 4.0),

@@ -28,7 +28,7 @@ PRECONDITIONED = 1.5
 
 @dataclass
 class Machine:
-    """What is assumed, and not measured here."""
+    """Assumptions that are not measured here."""
 
     name: str
     nodes: int
@@ -117,7 +117,7 @@ class Model:
         return self.tangential, self.normal, self.memory, self.flops, self.seconds, self.solve
 
     def applications(self, n):
-        """In those of the tangential operator: the normal one has half the fields."""
+        """Applications counted as tangential ones: the normal operator has half the fields."""
         return self.tangential(n) + 0.5 * self.normal(n)
 
     def computing(self, n, machine):

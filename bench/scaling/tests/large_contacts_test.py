@@ -1,4 +1,4 @@
-"""large_contacts_test.py SOURCE_DIR: the model of large contacts agrees with what was counted, its arithmetic with theory,
+"""large_contacts_test.py SOURCE_DIR: the model of large contacts agrees with the counts, its arithmetic with theory,
 and the page with the model."""
 
 import json

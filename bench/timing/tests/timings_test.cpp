@@ -89,7 +89,7 @@ TEST(Timings, UnitsAreSeconds) {
                     HasSubstr("ns, us, ms, s")));
 }
 
-// A file of aggregates alone names its benchmarks, and has no times of them.
+// A file of aggregates only has its benchmarks' names and no times.
 TEST(Timings, AggregatesAloneAreNoTimes) {
   const Timings timings = parse(file_with(
       R"({"name": "sort_mean", "run_name": "sort", "run_type": "aggregate", "aggregate_name": "mean", "real_time": 10})"));

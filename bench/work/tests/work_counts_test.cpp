@@ -96,7 +96,7 @@ Instructions read(const std::string& text) {
   return read_callgrind(folder / "out");
 }
 
-/// A call's line says what it takes inside, which stands again where it is executed.
+/// A call's line has the inclusive cost, which is repeated at the lines of the callee.
 constexpr const char* kCallgrind = R"(# callgrind format
 version: 1
 events: Ir
