@@ -21,9 +21,9 @@ double no_slip_twist(double moment);
 double small_moment_twist(double moment);
 
 /// Discrete element codes: a linear spring, and free spinning at (2/3) mu W a, as if the pressure were
-/// uniform (Marshall 2009): 13 % more than the sphere can carry. That cap is what the codes share. Their
-/// springs differ (Marshall's is half the tangential stiffness times a^2); here it is that of no slip, (16/3)
-/// G a^3.
+/// uniform (Marshall 2009): 13 % more than the sphere can carry. All these codes have this cap. Their springs
+/// differ (Marshall's is half the tangential stiffness times a^2); this one has the stiffness without slip,
+/// (16/3) G a^3.
 double dem_moment_limit();
 /// min((16/3) twist, 2/3). twist >= 0.
 double dem_moment(double twist);

@@ -17,9 +17,9 @@ using std::numbers::pi;
 /// (1 - c)(1 + c), the square of the modulus that belongs to c.
 double squared_modulus(StickRadius c) { return c.complement * (1 + c.ratio); }
 
-// With f = E, K or B of modulus sqrt(1 - s^2) and -H' = f/s, M and what it lacks of M_lim are integrals of
-// s^2 f. Both integrands are positive: neither cancels as Eq. (5) does. Each integral is a power series, of y
-// = 1 - c^2 or of c^2, up to 1/2.
+// With f = E, K or B of modulus sqrt(1 - s^2) and -H' = f/s, M and M_lim - M are integrals of s^2 f. Both
+// integrands are positive: neither cancels as Eq. (5) does. Each integral is a power series, of y = 1 - c^2
+// or of c^2, up to 1/2.
 
 /// integral_c^1 s^2 f ds, per f(c = 1), over y: half the integral of sqrt(1 - y) f, term by term.
 constexpr Table upper_series(const series::Exact& taylor) {

@@ -20,15 +20,16 @@ struct MomentShare {
   double deficit;  ///< 1 - M/M_lim
 };
 
-/// What slip adds on first loading, dimensionless as in torsion.hpp and cycle.hpp: twist beyond that of full
-/// stick at the same moment, and the energy lost in a cycle of this amplitude.
+/// The effect of slip on first loading, dimensionless as in torsion.hpp and cycle.hpp: the twist less the
+/// twist of full stick at the same moment, and the energy lost in a cycle of this amplitude.
 struct SlipPart {
   double twist;
   double energy_lost;
 };
 
-/// An axisymmetric contact, by its pressure p(r) and by what torsion needs of it. Lengths over the contact
-/// radius a, pressure over a reference p0 (each profile says which), combined modulus G, friction mu. With
+/// An axisymmetric contact: its pressure p(r), and the functions of it that torsion needs. Lengths over the
+/// contact radius a, pressure over a reference p0 (each profile says which), combined modulus G, friction mu.
+/// With
 ///   H(s) = integral_s^1 p(r)/sqrt(r^2 - s^2) dr
 /// superposed twists of flat punches of radii c..1 (Jaeger 1995) are the slip-stick solution: twist
 /// phi = mu H(c)/(2 G), moment M = (8/3) mu (integral_c^1 s^3 (-H'(s)) ds + H(1)), stick-zone traction
@@ -49,7 +50,8 @@ class Profile {
   double moment_limit() const { return constants_.moment_limit; }
   /// H(1): not zero only where the pressure grows at the edge like 1/sqrt(1 - r^2), as under a flat punch.
   double edge() const { return constants_.edge; }
-  /// M/M_lim up to which everything sticks, (8/3) H(1) over M_lim; and what slip adds to it, to all digits.
+  /// Largest M/M_lim at which everything sticks, (8/3) H(1) over M_lim; and the effect of slip, to all
+  /// digits.
   double full_stick() const { return 1 - slip_share(); }
   double slip_share() const { return constants_.slip_share; }
 
@@ -67,8 +69,8 @@ class Profile {
 
   /// q/(mu p0) where the edge begins to slip, r < 1; zero without an edge term.
   virtual double bonded_traction(double radius) const;
-  /// dM/dphi over G a_s^3, that of a bonded flat punch of the stick radius (half-spaces: Reissner and Sagoci
-  /// 1944).
+  /// dM/dphi over G a_s^3, the stiffness of a bonded flat punch of the stick radius (half-spaces: Reissner
+  /// and Sagoci 1944).
   virtual double bonded_stiffness(StickRadius) const { return 16.0 / 3; }
   /// None: that of half-spaces, which cycle.hpp has by integrals of H.
   virtual std::optional<SlipPart> slip_part(StickRadius) const { return std::nullopt; }

@@ -7,9 +7,9 @@
 /// what the pressure would lose if the contact shrank to the stick radius, all of it along F:
 ///   q = mu (p(r; a) - p(r; c)), F = mu (W(a) - W(c)), delta = mu (G_n/G_t) (d(a) - d(c)),
 /// with the combined moduli 1/G_t = sum (2 - nu_i)/(2 G_i) and 1/G_n = sum (1 - nu_i)/G_i of the two bodies
-/// and p, W, d those of the same indenter pressed to either radius. Exact for nu_i = 0, where G_t = G_n is
-/// torsion's G; otherwise the slip across F in the ring is left out, which is not zero, while
-/// q there has no such component. For similar bodies only (Dundurs' beta = 0).
+/// and p, W, d the pressure, load and approach of the same indenter at either radius. Exact for nu_i = 0,
+/// where G_t = G_n is torsion's G; otherwise the slip across F in the ring is left out, which is not zero,
+/// while q there has no such component. For similar bodies only (Dundurs' beta = 0).
 ///
 /// Dimensionless: lengths over a, forces over mu W, displacement (of one body's far points against the
 /// other's, along F) as G_t a delta/(mu W), energies over (mu W)^2/(G_t a).
@@ -22,7 +22,7 @@ struct TangentialState {
   double stick_ratio;        ///< c/a
   double stick_complement;   ///< 1 - c/a
   double displacement;       ///< G_t a delta/(mu W), (n + 1)/(4 n) (1 - (c/a)^n) for a gap like r^n
-  double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, that of a bonded circle of radius c
+  double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, as for a bonded circle of radius c
 };
 
 /// The state at a given force or displacement. Relative error of every member a few eps, plus what an ulp of
@@ -35,9 +35,9 @@ TangentialState from_displacement(double displacement, const SelfSimilarIndenter
 /// std::domain_error outside [0, 1] and where the pressure is infinite.
 double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter);
 
-/// Energy lost in a cycle between F and -F, over (mu W)^2/(G_t a): four times that of the first loading to F.
-/// For the sphere 9/5 (1 - L^(5/3) - 5/6 (1 - L)(1 + L^(2/3))) with L = 1 - F/(mu W) (Mindlin, Mason, Osmer
-/// and Deresiewicz 1952). Relative error below 1e-13.
+/// Energy lost in a cycle between F and -F, over (mu W)^2/(G_t a): four times the loss of the first loading
+/// to F. For the sphere 9/5 (1 - L^(5/3) - 5/6 (1 - L)(1 + L^(2/3))) with L = 1 - F/(mu W) (Mindlin, Mason,
+/// Osmer and Deresiewicz 1952). Relative error below 1e-13.
 double energy_lost_per_cycle(const TangentialState& state, const SelfSimilarIndenter& indenter);
 
 }  // namespace slipstick::analytic::tangential

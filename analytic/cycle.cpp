@@ -28,7 +28,8 @@ double twist_gain(const Profile& profile, StickRadius c, StickRadius s) {
 template <class Weight>
 double slip_integral(const Profile& profile, StickRadius c, double relative, Weight weight) {
   if (c.complement == 0) return 0;
-  // s = 1 - (1 - c) t keeps the digits of 1 - s, and the gain over H(c) those of the smallest loads.
+  // s = 1 - (1 - c) t keeps the digits of 1 - s, and the gain over H(c) keeps the digits of the smallest
+  // loads.
   const double deep = profile.twist_integral(c);
   const double integral = gsl::integral(
       [&](double t) {

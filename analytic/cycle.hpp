@@ -23,11 +23,11 @@ struct CycleState {
 };
 
 /// A contact with its memory of moments: the reversals that no later excursion has reached again. A branch
-/// that reaches the reversal before its own closes a loop, forgets both, and goes on along the outer branch;
-/// one that leaves the largest |M| so far behind is the first-loading curve. Everything but the energy lost
-/// is a function of moment_ratio() and turning_points(), to the last bit.
+/// that reaches the previous reversal closes a loop, deletes both reversals and continues along the outer
+/// branch; beyond the largest |M| reached it is the first-loading curve. Everything but the energy lost is a
+/// function of moment_ratio() and turning_points(), to the last bit.
 ///
-/// The twist is that of a contact without slip, which knows no history, and what slip adds to it, an integral
+/// The twist is the twist without slip, which has no memory, plus the effect of slip, an integral
 /// of a positive function for each branch. So a residual twist keeps its digits however small the load: the
 /// error is its own rounding and some 1e-15 of the largest branch's slip part. Tractions do cancel: error
 /// some 1e-15 of the largest branch's.
@@ -49,7 +49,7 @@ class LoadingHistory {
   const std::vector<double>& turning_points() const { return turning_points_; }
 
  private:
-  /// `weight` times first loading to `amplitude` is what a branch adds to the state at its start.
+  /// The state on a branch is the state at its start plus `weight` times the first loading to `amplitude`.
   struct Branch {
     double weight;
     double amplitude;
@@ -73,12 +73,12 @@ std::vector<CycleState> loading_curve(const std::vector<double>& turning_points,
                                       const Profile& profile = hertz_profile());
 
 /// Energy lost in a cycle between M and -M, the area of the loop in the plane of moment and twist: four times
-/// that of the first loading to M, since slip on either branch is twice as large. Relative error below 1e-14,
-/// plus what an ulp of the argument costs. Zero while everything sticks, as under a flat punch up to its
-/// full_stick().
+/// the loss of the first loading to M, since slip on either branch is twice as large. Relative error below
+/// 1e-14, plus the effect of an ulp of the argument. Zero while everything sticks, as under a flat punch up
+/// to its full_stick().
 double energy_lost_per_cycle(double moment_ratio, const Profile& profile = hertz_profile());
-/// The same by the state of first loading, for those that a ratio does not resolve; to a relative error, of
-/// which a larger one takes a table's profile a tenth of the time.
+/// The same from the state of first loading, for loads that a ratio does not resolve; to a given relative
+/// error. A larger error reduces the time for a tabulated profile to a tenth.
 double energy_lost_per_cycle(const TorsionState& state, const Profile& profile = hertz_profile(),
                              double relative = 1e-14);
 

@@ -13,7 +13,7 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// Series serve up to this k'. There so many powers of k'^2 leave less than 1e-17 of the sum.
+/// The series are used up to this k', where the powers of k'^2 left out are below 1e-17 of the sum.
 constexpr double kLogarithmic = 0.25;
 constexpr std::size_t kLogarithmicTerms = 16;
 

@@ -8,8 +8,8 @@
 /// modulus, as tables made at compile time. With y = k^2 and s = k':
 ///   f = f(y = 0) * sum taylor_n y^n               (DLMF 19.5.1, 19.5.2),
 ///   f = sum s^(2n) (log_n ln(1/s) + constant_n)   (DLMF 19.12.1, 19.12.2).
-/// For y or s^2 up to 1/2, with what integration and the products below do to the coefficients, the terms
-/// left out are below 1e-17 of the sum.
+/// For y or s^2 up to 1/2, also after integration and after the products below, the terms left out are below
+/// 1e-17 of the sum.
 namespace slipstick::analytic::series {
 
 constexpr std::size_t kTerms = 50;

@@ -63,7 +63,7 @@ void check(int status) {
 }
 
 double root(const std::function<double(double)>& f, double low, double high) {
-  constexpr int kMaxIterations = 200;  // bisection alone would need about 60
+  constexpr int kMaxIterations = 200;  // plain bisection would need about 60
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon();
 
   Callback callback(f);

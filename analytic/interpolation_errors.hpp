@@ -7,10 +7,10 @@
 
 namespace slipstick::analytic {
 
-/// How far numbers that come from a table may be from those of the pressure meant. `numbers` makes them from
+/// Estimated errors of numbers that are computed from a table of pressures. `numbers` makes them from
 /// a profile and its mean pressure, the same count each time. An estimate, no proof: of each number twice the
 /// sum, over stretches of the radius, of the largest change that another reading of the points there makes.
-/// Readings are made of every second point, of points moved by what their neighbours fail to predict, with
+/// The readings: every second point, points moved by their difference from their neighbours' prediction, with
 /// another value on the axis or another law at the edge. Sizes are added, so that errors of opposite signs do
 /// not hide each other. The estimate sees what the points show: noise and rounding of the values, a kink, an
 /// edge like any power of the distance. It does not see a feature between two points that shows at none, nor

@@ -29,7 +29,7 @@ TypedName split(const std::string& name) {
           .argument = name.substr(std::min(colon + 1, name.size()))};
 }
 
-/// What stands after the colon, as a number.
+/// The number after the colon.
 double number(const TypedName& name) {
   char* end = nullptr;
   const double value = std::strtod(name.argument.c_str(), &end);

@@ -18,8 +18,7 @@ struct NamedProfile {
   std::shared_ptr<const TabulatedProfile> table = {};
 };
 
-/// Throws std::invalid_argument for a name that is none of profile_words(), and what the profile itself
-/// throws.
+/// Throws std::invalid_argument for a name that is none of profile_words(); the profile may throw too.
 NamedProfile find_profile(const std::string& name);
 
 /// The normal load, and the body's shape in SI units, the numbers that shape_words() names.

@@ -8,7 +8,7 @@
 
 namespace slipstick::analytic {
 
-/// Refuses a number by its name, with what would be allowed.
+/// Throws std::domain_error with the number's name, value and allowed range.
 [[noreturn]] inline void out_of_range(std::string_view name, double value, std::string_view allowed) {
   throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, allowed));
 }

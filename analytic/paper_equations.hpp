@@ -2,9 +2,8 @@
 
 /// The paper's Eqs. (1) and (4)-(7) one by one, with (2) and (3) inside them, as printed and, where the print
 /// is wrong, as they should be. (Gradinaru and Spinu, Numerical simulation of elastic torsional contact with
-/// slip and stick.) These are for comparison: torsion.hpp is what to compute with. All dimensionless as
-/// there, each evaluated as it stands, cancellation included. Each throws std::domain_error outside the range
-/// given.
+/// slip and stick.) They serve comparison; compute with torsion.hpp. All dimensionless as there, each
+/// evaluated as printed, cancellation included. Each throws std::domain_error outside the range given.
 namespace slipstick::analytic::paper {
 
 /// Eq. (1) as printed, q/(mu p0): its stick branch is pi/2 too large. r in [0, 1], c in (0, 1).

@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 constexpr double kSmallest = std::numeric_limits<double>::min();
 
-/// Radius x of one of the punches, with its distances from both ends: x alone has too few digits near them.
+/// Radius x of one of the punches, with its distances from both ends: near the ends x has too few digits.
 struct Punch {
   double radius;
   double beyond;  ///< distance from the lowest of the integral
@@ -32,9 +32,9 @@ struct Punches {
 };
 
 /// Integrals of f(x) w(x)/sqrt(x^2 - r^2) dx. With x = m cosh(u), m the larger of r and b, the integrand is
-/// analytic: the square roots that r and w begin with are gone, the one at the smaller of the two lies arccos
-/// of their ratio off the real axis. Gauss's rule takes panels in proportion to the distance from what is
-/// singular.
+/// analytic: the substitution removes the square root at m; the one at the smaller of the two lies arccos of
+/// their ratio off the real axis. The panels of Gauss's rule are proportional to the distance from the
+/// singularity.
 class Quadrature {
  public:
   /// growth: the power of x that the integrand follows.
@@ -172,7 +172,7 @@ class Superposition : public Profile {
     return {.excess = ratio, .deficit = 1 - ratio};
   }
 
-  /// x >= c is where the punch has a slip ring: q of each is that of its own torsion.
+  /// punches with x >= c have a slip ring: q of each follows from its own torsion.
   double stick_traction(StickRadius c, double radius, double inward) const override {
     if (radius == 0) return 0;
     const Punches range = punches(c, inward);
@@ -203,7 +203,7 @@ class Superposition : public Profile {
     return c.ratio < 0.5 ? c.ratio - shape_.flat : (1 - shape_.flat) - c.complement;
   }
 
-  /// Those larger than c, for integrals over dx/sqrt(x^2 - r^2) with r = c - inward.
+  /// Punches larger than c, for integrals over dx/sqrt(x^2 - r^2) with r = c - inward.
   Punches punches(StickRadius c, double inward) const {
     const double distance = distance_to_flat(c);
     if (distance >= 0)
@@ -267,7 +267,7 @@ class Power final : public Superposition {
   double second_moment_within(StickRadius c) const override {
     return power(c.ratio, c.complement) * c.ratio * c.ratio / (exponent_ + 2);
   }
-  /// x^n: n + 2 or n - 1, rounded, would cost digits of a small x, and a large n needs those of 1 - x.
+  /// x^n: n + 2 or n - 1, rounded, would cost digits of a small x, and a large n needs the digits of 1 - x.
   double power(double x, double inward) const {
     return inward < 0.5 ? std::exp(exponent_ * std::log1p(-inward)) : std::pow(x, exponent_);
   }

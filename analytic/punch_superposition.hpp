@@ -5,9 +5,9 @@
 #include "analytic/axisymmetric.hpp"
 
 /// Pressures made of flat punches' pressures of all radii x, p(r) = integral_r^1 w(x)/sqrt(x^2 - r^2) dx with
-/// w >= 0: every convex indenter's. What a flat punch of radius x adds to H, to the moment and to a traction
-/// is positive, so that integrals over w cancel nowhere. Relative error at most 10 eps (of twist_slope 20)
-/// for c in [1e-12, 1 - 1e-12], and no failure for c or 1 - c down to 1e-100.
+/// w >= 0: as for every convex indenter. The contributions of a flat punch of radius x to H, to the moment
+/// and to a traction are positive, so that integrals over w do not cancel. Relative error at most 10 eps (of
+/// twist_slope 20) for c in [1e-12, 1 - 1e-12], and no failure for c or 1 - c down to 1e-100.
 namespace slipstick::analytic {
 
 /// Indenter whose gap grows like r^n, n in [0.01, 1000]: w = x^(n-1). n = 2 is the sphere, with p0 the peak;

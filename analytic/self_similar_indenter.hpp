@@ -14,7 +14,7 @@ class SelfSimilarIndenter {
   /// Throws std::domain_error outside n in [0.01, 1000] and infinity.
   explicit SelfSimilarIndenter(double gap_exponent = 2);
 
-  /// The profile under W_0, which says what p0 is.
+  /// The profile under W_0, which defines p0.
   const Profile& profile() const { return *profile_; }
   /// 1/(n + 1): the power of the load that the contact radius follows.
   double radius_power() const { return radius_power_; }

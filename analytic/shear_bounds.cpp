@@ -112,7 +112,7 @@ class BoundUnderHertz final : public Profile {
     double exponent;
 
     /// The sum over all discs larger than the stick area, of f(disc, cosine) p_c^power, where p = p_c sin(t)
-    /// and cosine = cos(t): the square root at their least, p = p_c, is gone. Panels shrink towards t = 0,
+    /// and cosine = cos(t): the substitution removes the square root at p = p_c. Panels shrink towards t = 0,
     /// where the measure goes like t^(n - 1) and all else like a constant and t^2; near t = pi/2 they grow
     /// with the distance from there and from where f is singular, at p_c cos(t) = +-i pole.
     template <class Function>

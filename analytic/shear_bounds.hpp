@@ -5,8 +5,8 @@
 #include "analytic/axisymmetric.hpp"
 
 /// Contacts whose friction does not follow the pressure: profiles of the bound f(r) that the shear traction
-/// meets in the slip ring, in place of mu p. Torsion asks nothing else of a friction law. `pressure()` is the
-/// bound over its p0, and W stands for the integral of the bound over the contact, over mu.
+/// meets in the slip ring, instead of mu p. Torsion depends on the friction law only through this bound.
+/// `pressure()` is the bound over its p0, and W is the integral of the bound over the contact, divided by mu.
 ///
 /// A bound that falls outwards is a sum of constant bounds on discs of all radii rho: f(r) = integral of dv
 /// over the bounds v < f(r), each with the disc rho(v) on which f is larger. A constant bound on a disc has

@@ -76,7 +76,7 @@ class GaussPanel {
   std::vector<double> barycentric_;
 };
 
-/// A radius, with its distances from what is singular.
+/// A radius, with its distances from the singular points.
 struct Node {
   double radius;
   double beyond_front;  ///< s - c
@@ -115,7 +115,7 @@ class Mesh {
 
   const GaussPanel& rule() const { return rule_; }
   std::size_t size() const { return nodes_.size(); }
-  /// Those before this one stick.
+  /// Earlier ones stick.
   std::size_t stick_nodes() const { return stick_nodes_; }
   const Node& operator[](std::size_t i) const { return nodes_[i]; }
   std::size_t panel_start(std::size_t i) const { return i - i % rule_.points(); }
@@ -190,7 +190,7 @@ class FrictionalPunch {
     return g_[front] - g_[front - 1];
   }
 
-  /// integral_0^1 f ds over that of A.
+  /// integral_0^1 f ds over integral_0^1 A ds.
   double stiffness_ratio() const {
     double sum = 0;
     for (std::size_t i = 0; i < mesh_.size(); ++i)

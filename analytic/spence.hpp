@@ -9,7 +9,7 @@
 ///
 /// The difference of the materials is Dundurs'
 ///   beta = ((1 - 2 nu_1)/G_1 - (1 - 2 nu_2)/G_2)/(2 ((1 - nu_1)/G_1 + (1 - nu_2)/G_2));
-/// against a rigid body 2 it is (1 - 2 nu_1)/(2 (1 - nu_1)). Where beta > 0, surface 1 wants to go inwards
+/// against a rigid body 2 it is (1 - 2 nu_1)/(2 (1 - nu_1)). Where beta > 0, surface 1 tends to move inwards
 /// and friction on it points outwards; the sign of beta matters for nothing else.
 namespace slipstick::analytic {
 

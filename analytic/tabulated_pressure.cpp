@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Below this stick radius the squares of what is as small leave the range of a double; all functions have
+/// Below this stick radius squares of such small numbers leave the range of a double; all functions have
 /// long become their leading terms in c, and c^3 has all but underflowed.
 constexpr double kSmallestRatio = 1e-100;
 using Points = std::vector<PressurePoint>;
@@ -73,7 +73,7 @@ double whole_moment(const std::vector<Piece>& pieces, int power) {
 }
 
 /// asin(t)/2 - t sqrt(1 - t^2)/2 - t^3/(3 sqrt(1 - t^2)) with t = c/rho, times x/rho, x = sqrt(rho^2 - c^2):
-/// minus the share of a ring at rho in what the moment lacks. It is -1/3 integral_0^t s^4 (1 - s^2)^(-3/2)
+/// minus the share of a ring at rho in M_lim - M. It is -1/3 integral_0^t s^4 (1 - s^2)^(-3/2)
 /// ds, whose series stands in where the terms cancel.
 double lacking(double x, double rho, double c) {
   constexpr double kSeries = 0.5;
@@ -251,7 +251,7 @@ void check_points(const std::string& name, const Points& points, const PointPlac
     if (pressure == 0 && i + 1 < points.size())
       refuse(where(i), "pressure", pressure, "> 0 except at the last point, where the contact ends");
   }
-  constexpr std::size_t kMin = 16;  // every second of fewer tells too little of the error
+  constexpr std::size_t kMin = 16;  // every second of fewer points gives a poor error estimate
   if (points.size() < kMin)
     throw std::invalid_argument(fmt::format(
         "{}: {} points; allowed: at least {}, since the error of fewer cannot be estimated; best are points "
@@ -267,7 +267,7 @@ void check_that_a_circle_sticks(const Profile& profile, const Points& points, co
     const double c = points[i].radius;
     if (!(profile.twist_slope({.ratio = c, .complement = 1 - c}) > 0))
       throw std::invalid_argument(fmt::format(
-          "{}: the pressure rises so much beyond this radius that slip would not begin at the edge and no "
+          "{}: the pressure rises beyond this radius so steeply that slip would not begin at the edge and no "
           "circle stick; allowed: pressures that fall outwards, or nearly",
           where(i)));
   }

@@ -23,7 +23,7 @@ struct InterpolatedPressure {
 
 /// A pressure known at some radii only, in consistent units. Between them Steffen's interpolation (1990):
 /// piecewise cubic, monotone between any two points. Functions of the interpolant are good to 1e-13;
-/// interpolation_errors() estimates how far they are from those of the pressure meant.
+/// interpolation_errors() estimates the error by interpolation.
 struct TabulatedProfile {
   std::unique_ptr<const Profile> profile;
   double radius;                      ///< a, the last radius
@@ -32,10 +32,10 @@ struct TabulatedProfile {
   double largest_pressure;
 };
 
-/// `name` is for messages and for the profile. Throws std::invalid_argument, with the point and what is
-/// allowed, unless: at least 16 points; radii finite, rising from 0; pressures finite and positive, at the
-/// last point perhaps 0; and H decreasing, since else no circle sticks (the slip would begin inside: a
-/// pressure that rises outwards too much).
+/// `name` is for messages and for the profile. Throws std::invalid_argument, with the point and the allowed
+/// range, unless: at least 16 points; radii finite, rising from 0; pressures finite and positive, at the last
+/// point perhaps 0; and H decreasing, since else no circle sticks (the slip would begin inside: a pressure
+/// that rises outwards too much).
 TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points);
 
 /// The name of a point in messages, by its index: a line of a file.

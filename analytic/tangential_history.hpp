@@ -26,11 +26,11 @@ struct HistoryState {
 /// that the contact has grown through; the traction is the same superposition with every punch's part times
 /// mu and a share in [-1, 1]. New punches, as W grows by dW and F by dF, come with the share dF/(mu dW) and
 /// no slip where that is at most 1. Otherwise, and always where W does not grow, slip starts at the edge and
-/// sets the shares to 1 or -1, from the outermost punch inwards, as far as F asks for; a falling W takes the
-/// outermost punches away. At constant W this is Masing's rule.
+/// sets the shares to 1 or -1, from the outermost punch inwards, until their sum balances F; a falling W
+/// takes the outermost punches away. At constant W this is Masing's rule.
 ///
 /// Every member of the state, and a traction over p0, has an absolute error of some 1e-15 of the largest so
-/// far; the digits of small slip are those of cattaneo_mindlin.hpp.
+/// far; for small slip cattaneo_mindlin.hpp has more digits.
 class TangentialHistory {
  public:
   /// Out of contact.
@@ -52,7 +52,7 @@ class TangentialHistory {
     double load;
     double share;
   };
-  /// How a step slipped: the shares became `direction` from the outermost punch in to that of the load
+  /// How a step slipped: the shares became `direction` for the punches from the outermost to the one of load
   /// `front`.
   struct Slip {
     double front;

@@ -105,7 +105,7 @@ StickRadius stick_from_deficit(double deficit, const Profile& profile) {
   return stick(solve(deficit, std::cbrt(deficit), 1, [&](double at) {
     const StickRadius c = stick(at);
     const double value = profile.moment_share(c).deficit;
-    const double slope = at * slope_in_cube(c, profile);  // first: the cube alone could underflow
+    const double slope = at * slope_in_cube(c, profile);  // first: the cube could underflow
     return Sample{.value = value, .power = 3 * slope * at * at / value};
   }));
 }
@@ -131,7 +131,7 @@ bool is_too_narrow(double load, const Profile& profile) {
 
 /// Where there is slip, or no load.
 TorsionState state_under(MomentShare share, const Profile& profile) {
-  constexpr double kNearLimit = 0.3;  // of what slip adds; 1 - c is there no small difference
+  constexpr double kNearLimit = 0.3;  // fraction of slip's effect; there 1 - c is no small difference
   const StickRadius c = share.deficit > kNearLimit * profile.slip_share()
                             ? stick_from_excess(share.excess, profile)
                             : stick_from_deficit(share.deficit, profile);

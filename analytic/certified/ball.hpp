@@ -33,7 +33,7 @@ class Precision {
   slong before_;
 };
 
-/// What one of Arb's functions puts into its first argument.
+/// Returns the first argument, which one of Arb's functions sets.
 template <class Result, class Function, class... Arguments>
 Result made_by(Function* f, const Arguments&... arguments) {
   Result result;
@@ -77,7 +77,7 @@ class Ball {
   friend bool operator<(const Ball& a, const Ball& b) { return arb_lt(a.x_, b.x_) != 0; }
   friend bool operator>(const Ball& a, const Ball& b) { return arb_gt(a.x_, b.x_) != 0; }
   bool finite() const { return arb_is_finite(x_) != 0; }
-  /// Whether it lies inside the other, both ends at a distance from the other's.
+  /// Whether this ball lies strictly inside the other.
   bool inside(const Ball& other) const { return arb_contains_interior(other.x_, x_) != 0; }
 
   friend Ball lower_bound(const Ball& a) { return bound(arb_get_lbound_arf, a); }

@@ -34,8 +34,8 @@ ComplexBall bound_of_term(const Ball& rate, const Ball& c, int sign, const Compl
 }
 
 /// integral_0^end e^(rate u) K(c e^(sign u)) du. Over the logarithm the integrands are smooth all the way to
-/// c = 0. Where the integrator asks for analyticity it wants the size alone, and Arb's own of a mean is far
-/// too large.
+/// c = 0. For its analyticity test the integrator needs only a bound, and Arb's bound of a mean is far too
+/// large.
 Ball integral_of_k(const Ball& rate, const Ball& c, int sign, const Ball& end) {
   const auto integrand = [&](const ComplexBall& u, bool analytic) {
     if (analytic) return bound_of_term(rate, c, sign, u);
@@ -108,9 +108,9 @@ Ball slip_traction(const Law& law, const Rational& radius) {
 
 // The stick ratio of a given load or twist is a root in y = ln((1 - c)/c).
 
-/// ln(quantity/value), of a flat punch by what both exceed those at the onset of slip, and its derivative in
-/// y. It is concave and, of the lesser of the two parts of the load, nowhere flat near the root: Newton's
-/// method finds it from afar.
+/// ln(quantity/value), for a flat punch with the values at the onset of slip subtracted from both, and its
+/// derivative in y. It is concave and, of the lesser of the two parts of the load, nowhere flat near the
+/// root: Newton's method finds it from afar.
 struct Residual {
   Ball value;
   Ball slope;
@@ -138,7 +138,7 @@ Residual residual(const Equation& equation, const Ball& logit) {
 
 constexpr slong kRoughBits = 20;
 
-/// A root to about 20 bits. Nothing where the precision does not do.
+/// A root to about 20 bits; none if the precision is too low.
 std::optional<Ball> rough_root(const Equation& equation) {
   constexpr int kMaxSteps = 100;
   constexpr int kFarthest = 2400;  // c or 1 - c = 1e-1042

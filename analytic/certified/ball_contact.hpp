@@ -65,7 +65,7 @@ struct Moment {
 };
 Moment moment_at(const Law& law, const Stick& stick, const Ball& twist_integral);
 
-/// q/(mu p0). Nothing where the precision does not tell stick from slip.
+/// q/(mu p0); none if the precision is too low to separate stick from slip.
 std::optional<Ball> traction(const Law& law, const Stick& stick, const Rational& radius);
 
 /// quantity = value, beyond the onset of slip: twist or the lesser of moment_ratio (over its onset) and
@@ -77,7 +77,7 @@ struct Equation {
   Rational value;
 };
 
-/// The stick ratio that fulfils it, proven. Nothing where the precision does not do.
+/// The stick ratio that fulfils it, proven; none if the precision is too low.
 std::optional<Stick> solve(const Equation& equation);
 
 }  // namespace slipstick::analytic::certified

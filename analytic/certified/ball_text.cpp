@@ -63,7 +63,7 @@ Ball ten_to(slong exponent) {
   return exponent < 0 ? 1 / result : result;
 }
 
-/// The e with 10^e <= |x| < 10^(e + 1), or one beside it.
+/// The e with 10^e <= |x| < 10^(e + 1), or an adjacent one.
 slong decimal_exponent(const Ball& ball) {
   const Ball log10 = log(abs(ball.middle())) / log(Ball(10));
   return static_cast<slong>(arf_get_si(arb_midref(log10.get()), ARF_RND_FLOOR));

@@ -42,8 +42,8 @@ class Rational {
 /// which calls it `name`, for other text, and for numbers but 0 outside 1e-1000..1e1000.
 Rational read_exactly(const std::string& name, const std::string& text);
 
-/// The number in the ball to this many significant digits, with a radius that holds what the ball leaves open
-/// and what rounding took. Nothing where the ball is too wide for that to stay within 0.51 of the last digit.
+/// The number in the ball to this many significant digits, with a radius that includes the ball's radius and
+/// the rounding to decimal. None if this radius would exceed 0.51 of the last digit.
 std::optional<certified::Number> print_proven(const Ball& ball, int digits);
 
 }  // namespace slipstick::analytic

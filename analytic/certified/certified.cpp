@@ -116,7 +116,8 @@ std::optional<Stick> stick_of(const Question& question) {
   if (question.given != Quantity::twist) {
     const bool deficit_given = question.given == Quantity::moment_deficit;
     const Rational deficit = deficit_given ? question.value : one - question.value;
-    // The lesser part, roughly, of what lies between the onset of slip and gross slip.
+    // Estimate of the distance to the onset of slip or to gross slip, whichever is smaller, over the distance
+    // between the two.
     const bool deficit_less =
         deficit < (question.kind == Kind::flat_punch ? Rational(3, 40) : Rational(1, 2));
     equation.quantity = deficit_less ? Quantity::moment_deficit : Quantity::moment_ratio;
@@ -134,7 +135,7 @@ void set_given(const Question& question, Balls& balls) {
   if (question.given == Quantity::twist) balls.twist = value;
 }
 
-/// Nothing where the precision does not do.
+/// None if the precision is too low.
 std::optional<Balls> compute(const Question& question) {
   const Law law(question.kind, question.exponent);
   const Ball load = load_over_onset(question, law);
@@ -162,7 +163,7 @@ std::optional<Balls> compute(const Question& question) {
   return balls;
 }
 
-/// Nothing where a number cannot be printed to its last digit.
+/// None if a number cannot be printed to its last digit.
 std::optional<State> print(const Question& question, const Balls& balls, int digits) {
   bool proven = true;
   const auto number = [&](const Ball& ball) {

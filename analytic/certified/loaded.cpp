@@ -13,7 +13,7 @@ State state(const Profile& profile, Quantity given, const std::string& value,
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(
         fmt::format("certified digits need FLINT with Arb: on Debian or Ubuntu apt-get install libflint-dev "
-                    "libflint-arb-dev (FLINT 3: libflint-dev alone), then build again ({})",
+                    "libflint-arb-dev (FLINT 3: only libflint-dev), then build again ({})",
                     error.what()));
   }
   return proven(profile, given, value, radii, digits);

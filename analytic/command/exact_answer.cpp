@@ -15,8 +15,7 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// A number, or null and a reason beside it: where there is none (an equation outside its range) or where it
-/// is infinite.
+/// A number, or null with a reason: an equation outside its range, or an infinite value.
 template <class Function>
 void put(Json& object, const std::string& key, Function function) {
   try {

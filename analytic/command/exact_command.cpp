@@ -148,7 +148,7 @@ void add_state_options(CLI::App& exact, Options& options) {
   CLI::Option* unload = exact.add_option("--unload-to", options.unload_to,
                                          "M/M_lim to unload to from the state, normal load constant");
   unload->excludes(history);
-  exact.add_option("--certified", options.certified, "give each number with so many proven digits, 15..100")
+  exact.add_option("--certified", options.certified, "print each number with N proven digits, 15..100")
       ->check(CLI::Range(15, 100))
       ->excludes(history)
       ->excludes(unload);

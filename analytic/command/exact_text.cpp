@@ -36,7 +36,7 @@ void write_line(std::ostream& out, const std::string& name, const std::string& s
   out << '\n';
 }
 
-/// Another law's value beside the exact one, and how far it is.
+/// Another law's value and its distance from the exact one.
 void write_beside(std::ostream& out, const std::string& law, const Json& exact, const Json& entry,
                   const std::string& key) {
   if (entry.at(key).is_null()) {
@@ -65,9 +65,9 @@ void write_table_errors(std::ostream& out, const Json& answer) {
     const Json& errors = answer.at("error_estimate");
     out << fmt::format("p0 +/- {:.1e}, M_lim +/- {:.1e} mu W a.\n", errors.at("mean_pressure").get<double>(),
                        errors.at("moment_limit").get<double>());
-    out << "Each +/- is an estimate, no proof, of what interpolation between the points and noise of their "
-           "values cost:\nother pressures that fit the points are tried. Energies and what unloading leaves "
-           "have none.\n\n";
+    out << "Each +/- estimates, without proof, the error by interpolation between the points and by noise of "
+           "their\n"
+           "values, from other pressures that fit the points. Energies and residual values have none.\n\n";
   } else {
     out << fmt::format("No number has an estimate of its error: {}.\n\n",
                        answer.contains("error_estimate_reason")

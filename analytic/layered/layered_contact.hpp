@@ -17,13 +17,13 @@ namespace slipstick::analytic::layered {
 struct LayeredContact {
   Indentation indentation;  ///< p0 is the mean pressure
   std::shared_ptr<const Profile> profile;
-  /// Estimated relative error of the contact's numbers: by what the same with fewer points differs.
+  /// Estimated relative error of the contact's numbers: the change with fewer points.
   double uncertainty;
 };
 
 enum class Indenter { sphere, flat_punch };
 
-/// radius: relative radius of curvature of the sphere or paraboloid, or that of the punch, m. Throws
+/// radius: relative radius of curvature of the sphere or paraboloid, or radius of the punch, m. Throws
 /// std::domain_error, with name and value, unless load and radius are positive and finite, and where the
 /// contact radius is more than 150 thicknesses, the surfaces would part within it, or slip would begin
 /// inside.

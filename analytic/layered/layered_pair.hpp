@@ -17,17 +17,17 @@ struct Coat {
   Elastic base;      ///< of the half-space below
 };
 
-/// A body: its material at the surface, and what lies below if that is a layer.
+/// A body: its material at the surface, and the base if the surface material is a layer.
 struct Body {
   Elastic surface;
   std::optional<Coat> coat = {};
 };
 
-/// Two bodies that touch. Under a traction of wave number k their surfaces move as those of half-spaces of
-/// the surface materials, times 1 + excess(k); the excess falls like exp(-2 k h).
+/// Two bodies that touch. Under a traction of wave number k their displacements are those of half-spaces,
+/// made of the surface materials, times 1 + excess(k); the excess falls like exp(-2 k h).
 class Pair {
  public:
-  /// Throws std::domain_error unless moduli and thicknesses are positive, those of layers finite, Poisson's
+  /// Throws std::domain_error unless moduli and thicknesses are positive, layers have finite ones, Poisson's
   /// ratios in (-1, 1/2], and at least one body coated.
   Pair(const Body& first, const Body& second);
 

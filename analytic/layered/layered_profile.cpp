@@ -223,9 +223,9 @@ class Stick {
   StickRadius c_;
   double h_;
   std::vector<Node> chi_;            // the half-space's: within c, and beyond
-  std::size_t core_size_;            // of the nodes within c, those of the solutions
+  std::size_t core_size_;            // number of nodes within c, on which the solutions live
   std::vector<double> ends_;         // of panels of t^2
-  std::vector<Solution> solutions_;  // of a unit twist, and of what the half-space's chi moves
+  std::vector<Solution> solutions_;  // for a unit twist, and for the displacement by the half-space's chi
   double turn_ = 0;                  // twist beyond the half-space's
   double twist_slope_ = 0;
   double stiffness_ = 0;
@@ -274,7 +274,8 @@ class LayeredProfile final : public Profile {
 
  private:
   std::shared_ptr<const Stick> stick(StickRadius c) const {
-    constexpr std::size_t kMaxKept = 200;  // a search for a load asks for ten, a history's branches again
+    constexpr std::size_t kMaxKept =
+        200;  // a search for a load needs ten, which a history's branches use again
     const std::scoped_lock lock(mutex_);
     std::shared_ptr<const Stick>& known = sticks_[{c.ratio, c.complement}];
     if (known) return known;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes profile_references.csv beside it: profiles made of flat punches, by direct quadrature (mpmath).
+"""Writes profile_references.csv: profiles made of flat punches, by direct quadrature (mpmath).
 
 The quadratures are over plain radii, split where the integrand changes, with Legendre's integrals; nothing is shared
-with the C++ code. Every number is that of the exact value of the doubles given. Run it without arguments; it takes
+with the C++ code. Every number belongs to the exact values of the given doubles. Run it without arguments; it takes
 some minutes, on all processors.
 """
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes elliptic_references.csv beside it: 50 digits (mpmath). States and tractions stand in certified_references.csv.
+"""Writes elliptic_references.csv: 50 digits (mpmath). States and tractions stand in certified_references.csv.
 
-Nothing here shares a series or a Carlson form with the C++ code. Every number is that of the exact value of the
-double given, to 25 digits. Run it without arguments.
+It shares no series and no Carlson form with the C++ code. Every number belongs to the exact value of the given
+double, to 25 digits. Run it without arguments.
 """
 
 import pathlib

@@ -3,7 +3,7 @@
 --certified`, as tests of code in doubles compare with them. Doubles are meant exactly, and are handed over in hexadecimal.
 
 table writes certified_references.csv again. search looks for inputs at which double precision is farther off than at those
-in hardest/, by what is allowed, and adds them; no row is ever dropped. check makes a sample of the table's rows again
+in hardest/, in units of the allowed error, and adds them; no row is ever dropped. check makes a sample of the table's rows again
 (SLIPSTICK_TEST_ALL=1: all) and fails where one differs."""
 
 import argparse
@@ -45,7 +45,7 @@ FRONTS = {"stick_complement": [1e-12, 1e-6],
 POWER_FRONTS = {"stick_ratio": [1e-3, 0.3, 0.9]}
 INSIDE = [1e-6, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999]
 
-# What is given, and whether tractions are asked for, at a part of the stick radius.
+# The given quantity, and whether tractions are computed, at a part of the stick radius.
 FUNCTIONS = [(given, False) for given in QUANTITIES] + [("stick_ratio", True), ("stick_complement", True)]
 
 
@@ -175,7 +175,7 @@ def drawn(given, chance):
 
 
 def near(at, chance):
-    """The same input a little beside."""
+    """The same input, changed a little."""
     step = 10**(-2 - 13 * chance.random()) * chance.uniform(-1, 1)
     return min(at[0] * (1 + step), 1 - 1e-16), at[1]
 

@@ -32,7 +32,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kAllowed = 8;    ///< eps, where the input costs no digits
 constexpr double kOfTheCost = 4;  ///< times what one ulp of the input costs, where that is more
 
-/// In units of eps: the error, and what is allowed, 8 or 4 times what one ulp of the input costs.
+/// In units of eps: the error, and the allowed error: 8, or 4 times the change by one ulp of the input.
 struct Replay {
   double error;
   double allowed;

@@ -61,7 +61,7 @@ TEST(Approximations, AreOffAsTabulated) {
   EXPECT_NEAR(100 * (dem_moment(1.0 / 8) / from_twist(1.0 / 8).moment - 1), 62, 0.5);
 }
 
-/// Slip only softens: whoever leaves some of it out is too stiff.
+/// Slip only softens: a law that neglects some of it is too stiff.
 TEST(Approximations, AreAllTooStiff) {
   for (const auto& law : approximations()) {
     for (const double m : {0.01, 0.1, 0.5, 0.9, 0.9999})

@@ -8,7 +8,7 @@
 namespace slipstick::analytic {
 namespace {
 
-/// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
+/// The loop by Masing's rule: 8 integral M dphi - 4 M phi over the first loading.
 TEST(EnergyLost, IsTheAreaOfTheLoop) {
   for (const Profile* profile : testing::kClosedForms)
     for (const double m : {0.3, 0.6, 0.9, 0.99}) {
@@ -76,7 +76,7 @@ TEST(EnergyLost, KeepsTheDigitsOfAMomentJustBeyondFullStick) {
   for (const auto& known : {Known{0.85, 0.002772036329860887973, 1.9228249682955457334e-6},
                             Known{0.86, 0.026959534347403746851, 0.0001833693634847616249},
                             Known{0.9, 0.13635684050612670018, 0.0048828889370936979207}}) {
-    // Half a unit in the share of slip, 0.15, costs this beside the 8 units of all members.
+    // Half a unit in the share of slip, 0.15, costs this in addition to the 8 units of all members.
     const double excess = known.moment_ratio - punch.full_stick();
     const double share = kEps / 16 / excess;
     EXPECT_NEAR(from_moment_ratio(known.moment_ratio, punch).stick_complement / known.stick_complement, 1,

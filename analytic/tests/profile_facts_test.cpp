@@ -1,5 +1,5 @@
-// What statics and friction ask of any profile. Pressure, load, moments and tractions come from separate
-// formulas, closed, superposed or interpolated.
+// Facts of statics and friction that hold for any profile. Pressure, load, moments and tractions come from
+// separate formulas, closed, superposed or interpolated.
 
 #include <fmt/core.h>
 
@@ -81,7 +81,7 @@ TEST(AnyProfile, HasTheMomentOfItsTractions) {
     }
 }
 
-/// dM/dphi = 16/3 G a_s^3, that of a bonded punch of radius a_s; and -c H' is the slope of H.
+/// dM/dphi = 16/3 G a_s^3, as for a bonded punch of radius a_s; and -c H' is the slope of H.
 TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
   for (const auto& [each, roughness] : every_profile())
     for (const double c : {0.05, 0.3, 0.7, 0.93}) {

@@ -114,7 +114,7 @@ TEST(Superposition, LeavesFullStickLinearly) {
   }
 }
 
-/// H goes on growing down to the smallest stick radius, like ln(1/c) or faster, and a twist finds its state.
+/// H grows down to the smallest stick radius, like ln(1/c) or faster, and a twist finds its state.
 TEST(PowerProfile, AnswersATwistForEveryExponent) {
   for (int i = 0; i <= 1000; ++i) {
     const double n = 0.01 * std::pow(1e5, i / 1000.0);

@@ -53,7 +53,7 @@ TEST(SpenceContact, TendsToGoodmansWithTheSquareOfBeta) {
 TEST(SpenceContact, IsAsStiffAsMossakovskiiSaysWhereFrictionIsLarge) {
   const double stuck = std::atanh(0.3) / 0.3;
   const auto contact = spence_contact(3, 0.3);
-  // The ring that slips is narrow, and what it lacks is of the order of its width times that share.
+  // The ring that slips is narrow, and its deficit is of the order of its width times that share.
   EXPECT_LT(1 - contact.stick_ratio, 2e-5);
   EXPECT_NEAR(contact.stiffness_ratio / stuck, 1, 2e-5);
   EXPECT_LT(contact.stiffness_ratio, stuck);

@@ -77,7 +77,7 @@ KnownPressure known(const char* name, std::shared_ptr<const Profile> profile) {
   return {name, [profile](double r) { return profile->pressure(r); }, profile};
 }
 
-/// Known by so many points that their error is below kTruth.
+/// Given at enough points for an error below kTruth.
 KnownPressure dense(const char* name, const std::function<double(double)>& pressure) {
   constexpr int kIntervals = 2000;
   return {name, pressure, tabulated_profile(name, sample(pressure, kIntervals, true)).profile};
@@ -153,8 +153,9 @@ std::vector<double> numbers_of(const TorsionState& state, const Profile& profile
 
 /// The estimate is not below the error in any of thousands of numbers, nor much above it.
 TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
-  constexpr double kTruth = 1e-8;      // of the pressures known by points
-  constexpr double kUsualExcess = 30;  // an estimate so many times too large still tells the digits to print
+  constexpr double kTruth = 1e-8;  // of the pressures known by points
+  constexpr double kUsualExcess =
+      30;  // an estimate that is too large by this factor still gives the digits to print
   std::mt19937 random(20240611);
   std::vector<double> excess;
   std::size_t below = 0;
@@ -275,7 +276,7 @@ TEST(TabulatedProfile, RefusesWhatIsNoContactPressure) {
   refused(sample([](double r) { return r < 0.6 ? 1.0 : 8.0; }, 15), "point", "pressures that fall outwards");
 }
 
-/// A little more pressure towards the edge than in the middle is what a flat punch has.
+/// A flat punch has a little more pressure towards the edge than in the middle.
 TEST(TabulatedProfile, TakesAPressureThatRisesALittle) {
   const auto table =
       tabulated_profile("rising", sample([](double r) { return 1 / std::sqrt(1.2 - r * r); }, 50));

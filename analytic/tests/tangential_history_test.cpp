@@ -114,7 +114,7 @@ TEST(TangentialHistory, LocksWhatItHasWhileOnlyTheLoadRises) {
   // A little more force slips at the new edge: the ring that was there stays as it was.
   after.load_to(2, 0.6);
   EXPECT_NEAR(after.state().stick_radius, std::cbrt(1.9), kRounding);
-  // Beyond the force that the larger contact would have had from the start, it has forgotten.
+  // Beyond the force of a contact of the larger size from the start, the history has no effect.
   after.load_to(2, 1.7);
   EXPECT_NEAR(after.state().displacement, loaded({{2, 0}, {2, 1.7}}).state().displacement, kRounding);
 }

@@ -26,7 +26,7 @@ std::function<void(benchmark::State&)> repeated(Work work) {
   };
 }
 
-/// A counter of work per second; `work` is the work of one iteration.
+/// A counter of work per second; the argument is the work of one iteration.
 inline benchmark::Counter rate(double of_one_iteration) {
   return {of_one_iteration, benchmark::Counter::kIsIterationInvariantRate};
 }

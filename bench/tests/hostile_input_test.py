@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """hostile_input_test.py PROGRAM: every reader of the program against every way in which a file can be damaged: each is
-refused at once, with its name and what is allowed, and exit code 2. What a fuzzer finds stands in the corpora beside
+refused at once, with its name, the allowed content and exit code 2. The findings of fuzzers are kept in the corpora of
 the readers."""
 
 import json

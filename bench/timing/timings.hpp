@@ -64,7 +64,7 @@ Timings read_timings(const std::filesystem::path& file);
 /// source for any other text.
 nlohmann::ordered_json parse_benchmark_json(const std::string& text, const std::string& source);
 
-/// The same of a text; messages call it `file`.
+/// The same of a text; messages call it `source`.
 Timings parse_timings(const std::string& text, const std::string& source);
 
 }  // namespace slipstick::bench

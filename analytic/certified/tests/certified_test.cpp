@@ -57,8 +57,7 @@ TEST(Certified, FollowsTheAsymptotesAtBothEnds) {
   }
 }
 
-/// Forth by one quantity and back by any other: the way back holds what one started from between the ends of
-/// what it was given.
+/// From one quantity to another and back: the result encloses the starting value.
 TEST(Certified, GoesRoundBetweenAllQuantities) {
   const Precision precision(kBits);
   for (const Profile& profile : {kHertz, kCone, kFlatPunch, kConstant, power("1.5")})

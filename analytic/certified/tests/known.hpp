@@ -64,8 +64,8 @@ inline State at_stick_ratio(const Profile& profile, const std::string& c,
   return state(profile, Quantity::stick_ratio, c, radii, digits);
 }
 
-// Other ways than the code's: pressures in place of superposed punches,
-// Arb's elliptic integrals in place of means, other variables of integration.
+// Other ways than the code's: pressures instead of superposed punches,
+// Arb's elliptic integrals instead of means, other variables of integration.
 
 inline ComplexBall elliptic(void (*f)(acb_t, const acb_t, slong), const ComplexBall& parameter,
                             bool analytic) {

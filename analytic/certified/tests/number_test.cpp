@@ -28,7 +28,7 @@ TEST(CertifiedNumber, NarrowsInside) {
     }
 }
 
-/// Its digits as many as asked for, its radius within 0.51 of the last.
+/// The requested number of digits, its radius within 0.51 of the last.
 TEST(CertifiedNumber, IsProvenToItsLastDigit) {
   const Precision precision(600);
   for (const int digits : {15, 30, 77, 100})

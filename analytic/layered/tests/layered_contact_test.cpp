@@ -98,7 +98,7 @@ TEST(LayeredContact, IsLocalOnAThinLayerOrThatOfTheBase) {
                    profile->pressure(0) / 2 - 1, profile->moment_limit() * 15 / 8 - 1,
                    std::pow(base.indentation.contact_radius, 3) - 1});
   }
-  // What is off by h/a, or h/a ln(h/a), halves with it but for the logarithm, a sixth here.
+  // An error of order h/a or h/a ln(h/a) halves with h/a, apart from the logarithm, a sixth here.
   for (std::size_t i = 0; i < off[0].size(); ++i) {
     EXPECT_LE(std::abs(off[1][i]), 0.15);
     EXPECT_NEAR(off[0][i] / off[1][i], 2, 0.4);
@@ -128,7 +128,7 @@ TEST(LayeredTorsion, GoesOnAsABondedPunchAndLosesTheAreaOfItsLoop) {
   }
 }
 
-/// What a field moves the surface by at r, times the modulus (E*/2 or G): as half-spaces, by rings in closed
+/// Surface displacement by a field at r, times the modulus (E*/2 or G): as half-spaces, by rings in closed
 /// form, and by a Hankel transform (order 0 or 1) of the excess, which ends at k = 30 here.
 double moved(const std::function<double(double)>& field, int order, double r, double front,
              const std::function<double(double)>& excess) {
