@@ -136,7 +136,7 @@ class Exact(ProgramTest):
         self.assertEqual(estimate["traction"][0]["radius"], 0.3)
         self.near(table["pressure"][0]["value"], 1.5 * math.sqrt(1 - 0.09), estimate["pressure"][0]["value"])
         self.assertEqual(table["table"]["contact_radius"], 3e-3)
-        self.text(state, says=["+/-", "an estimate, no proof"])
+        self.text(state, says=["+/-", "estimates, without proof"])
 
     def test_a_table_of_few_points_is_refused_or_has_no_estimate(self):
         self.refused(f"--moment-ratio 0.1 --profile file:{self.hertz_table(9)}", "--profile", "hertz.csv",
