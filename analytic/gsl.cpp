@@ -19,7 +19,7 @@ namespace {
 /// left.
 class Callback {
  public:
-  explicit Callback(const std::function<double(double)>& f) : f_(f) { turn_abort_handler_off(); }
+  explicit Callback(const RealFunction& f) : f_(f) { turn_abort_handler_off(); }
   gsl_function handle() {
     return {.function = [](double x, void* self) { return static_cast<Callback*>(self)->call(x); },
             .params = this};
@@ -40,7 +40,7 @@ class Callback {
     }
   }
 
-  const std::function<double(double)>& f_;
+  const RealFunction& f_;
   std::exception_ptr thrown_;
 };
 
@@ -62,7 +62,7 @@ void check(int status) {
   throw std::runtime_error(message);
 }
 
-double root(const std::function<double(double)>& f, double low, double high) {
+double root(const RealFunction& f, double low, double high) {
   constexpr int kMaxIterations = 200;  // plain bisection would need about 60
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon();
 
@@ -80,7 +80,7 @@ double root(const std::function<double(double)>& f, double low, double high) {
   return gsl_root_fsolver_root(solver.get());
 }
 
-double integral(const std::function<double(double)>& f, double low, double high, double relative) {
+double integral(const RealFunction& f, double low, double high, double relative) {
   constexpr std::size_t kIntervals = 200;
 
   Callback callback(f);

@@ -4,8 +4,9 @@
 #include <gsl/gsl_sf_result.h>
 
 #include <cstddef>
-#include <functional>
 #include <vector>
+
+#include "analytic/real_function.hpp"
 
 /// GSL behind C++ calls: its abort handler off, every status checked, every handle freed.
 namespace slipstick::analytic::gsl {
@@ -26,11 +27,11 @@ double evaluate(Function* function, Arguments... arguments) {
 }
 
 /// The root of f in [low, high], to the last digits, by Brent's method. f must change sign there.
-double root(const std::function<double(double)>& f, double low, double high);
+double root(const RealFunction& f, double low, double high);
 
 /// The integral of f over [low, high] by doubly adaptive quadrature, to a relative error, or as accurately as
 /// the rounding of f allows.
-double integral(const std::function<double(double)>& f, double low, double high, double relative = 1e-14);
+double integral(const RealFunction& f, double low, double high, double relative = 1e-14);
 
 /// Gauss's rule, exact for degree 2 points - 1.
 class GaussRule {

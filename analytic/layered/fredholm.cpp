@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-double transformed(const std::function<double(double)>& excess, double thickness, double x) {
+double transformed(const RealFunction& excess, double thickness, double x) {
   constexpr double kCut = 22;    // k h beyond which exp(-2 k h), times powers, is below a rounding
   constexpr int kHalvings = 26;  // from there down to k h = 3e-7
   constexpr double kPhase = 16;  // radians that one rule of 20 points follows
@@ -56,8 +56,7 @@ std::vector<Node> gauss_nodes(const std::vector<double>& ends, Points points) {
   return nodes;
 }
 
-PiecewisePolynomial::PiecewisePolynomial(const std::function<double(double)>& f, std::vector<double> ends,
-                                         Points points)
+PiecewisePolynomial::PiecewisePolynomial(const RealFunction& f, std::vector<double> ends, Points points)
     : ends_(std::move(ends)) {
   const std::size_t n = points == Points::fewer ? 22 : 24;
   std::vector<double> values(n);
@@ -102,8 +101,8 @@ PiecewisePolynomial PiecewisePolynomial::derivative() const {
   return result;
 }
 
-CosineTransform::CosineTransform(const std::function<double(double)>& excess, double thickness, double reach,
-                                 double unit, Points points)
+CosineTransform::CosineTransform(const RealFunction& excess, double thickness, double reach, double unit,
+                                 Points points)
     : thickness_(thickness / unit),
       points_(points),
       unit_(unit),
@@ -123,7 +122,7 @@ double Solution::moment(int power) const {
 }
 
 std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
-                                     const std::vector<std::function<double(double)>>& right_sides) {
+                                     const std::vector<RealFunction>& right_sides) {
   const std::vector<Node> nodes = gauss_nodes(panel_ends(radius, 4 * thickness), points);
   const auto size = static_cast<Eigen::Index>(nodes.size());
   const auto node = [&](Eigen::Index i) { return nodes[static_cast<std::size_t>(i)]; };

@@ -3,6 +3,8 @@
 #include <functional>
 #include <vector>
 
+#include "analytic/real_function.hpp"
+
 /// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the
 /// real axis.
 namespace slipstick::analytic::layered {
@@ -33,7 +35,7 @@ double sum(const std::vector<Node>& nodes, const Function& f) {
 /// kernel, and so does one from (2 n h)^2 to (2 n h + 2 h)^2 of an even function's square argument.
 class PiecewisePolynomial {
  public:
-  PiecewisePolynomial(const std::function<double(double)>& f, std::vector<double> ends, Points points);
+  PiecewisePolynomial(const RealFunction& f, std::vector<double> ends, Points points);
 
   double operator()(double x) const;
   PiecewisePolynomial derivative() const;
@@ -49,8 +51,7 @@ class PiecewisePolynomial {
 class CosineTransform {
  public:
   /// For |x| <= reach, of an excess that falls like exp(-2 k h) and is smooth in ln k; lengths over `unit`.
-  CosineTransform(const std::function<double(double)>& excess, double thickness, double reach, double unit,
-                  Points points);
+  CosineTransform(const RealFunction& excess, double thickness, double reach, double unit, Points points);
 
   double operator()(double x) const { return unit_ * table_(unit_ * (x < 0 ? -x : x)); }
   double even(double t, double s) const { return (*this)(t - s) + (*this)(t + s); }
@@ -69,7 +70,7 @@ using Kernel = std::function<double(double t, double s)>;
 /// Solves f(t) + integral_0^radius K(t, s) f(s) ds = right_side(t). It is known at Gauss's points, and by the
 /// equation itself (Nystroem) anywhere else.
 struct Solution {
-  std::function<double(double)> right_side;
+  RealFunction right_side;
   Kernel kernel;
   std::vector<Node> nodes;
 
@@ -80,6 +81,6 @@ struct Solution {
 
 /// One solution for each right side; thickness as above.
 std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
-                                     const std::vector<std::function<double(double)>>& right_sides);
+                                     const std::vector<RealFunction>& right_sides);
 
 }  // namespace slipstick::analytic::layered

@@ -12,15 +12,17 @@
 
 namespace slipstick::bench {
 
+using Timing = std::function<void(benchmark::State&)>;  ///< the loop over iterations
+
 /// A benchmark, set up and checked.
 struct Prepared {
   std::map<std::string, benchmark::Counter> counters = {};
-  std::string invalid_reason = {};                     ///< why its result must not be timed; empty: nothing
-  std::function<void(benchmark::State&)> timing = {};  ///< the loop over iterations
+  std::string invalid_reason = {};  ///< why its result must not be timed; empty: nothing
+  Timing timing = {};
 };
 
 template <typename Work>
-std::function<void(benchmark::State&)> repeated(Work work) {
+Timing repeated(Work work) {
   return [work](benchmark::State& state) mutable {
     for ([[maybe_unused]] auto _ : state) work();
   };
