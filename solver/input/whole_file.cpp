@@ -161,10 +161,6 @@ void write_whole_named_file(const fs::path& file, const WriteNamed& write) {
   }
 }
 
-void write_whole_file(const fs::path& file, const std::function<void(std::FILE*)>& write) {
-  write_whole_named_file(file, [&](std::FILE* stream, const fs::path&) { write(stream); });
-}
-
 void write_whole_file(const fs::path& file, std::string_view content) {
   write_whole_named_file(file, put(content));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -9,15 +10,20 @@
 /// The one way in which files are written.
 namespace slipstick::solver {
 
+/// Writes a file's content to a stream; `draft` is the stream's name.
+using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
+
 /// Replaces a file atomically, also if this process is killed or the machine stops: `write` fills a draft in
 /// the same folder, which is flushed to the disk and renamed. The next writer of the file reuses the draft of
 /// a killed process. Links are followed; devices and pipes, such as /dev/stdout, are written to directly.
 /// Throws InputError with the system's reason and a remedy if the file cannot be written; the old file then
 /// stays.
-void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
-/// The same; `write` also receives the draft's name.
-using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
 void write_whole_named_file(const std::filesystem::path& file, const WriteNamed& write);
+/// The same without the draft's name.
+template <std::invocable<std::FILE*> Write>
+void write_whole_file(const std::filesystem::path& file, const Write& write) {
+  write_whole_named_file(file, [&](std::FILE* stream, const std::filesystem::path&) { write(stream); });
+}
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 /// The same for a file of the program's own: a link or a pipe of this name is replaced.
 void replace_whole_file(const std::filesystem::path& file, std::string_view content);
