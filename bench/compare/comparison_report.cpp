@@ -9,7 +9,6 @@
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/results/verdict_files.hpp"
 
 namespace slipstick::bench {
 namespace {

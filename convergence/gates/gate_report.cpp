@@ -12,7 +12,6 @@
 
 #include "convergence/gates/published.hpp"
 #include "convergence/results/markup.hpp"
-#include "convergence/results/verdict_files.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {

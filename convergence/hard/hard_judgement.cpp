@@ -88,24 +88,28 @@ struct ComparedNumber {
 };
 
 double no_size(const EndRecord&) { return 0.0; }
+double twist_of(const EndRecord& end) { return end.loads.twist_angle; }
+double moment_of(const EndRecord& end) { return end.loads.moment; }
+double limit_of(const EndRecord& end) { return end.loads.moment_limit; }
+double load_of(const EndRecord& end) { return end.contact.normal_load; }
+double radius_of(const EndRecord& end) { return end.contact.contact_radius; }
+double elastic_of(const EndRecord& end) { return end.energy.elastic; }
 
-constexpr std::array kComparedNumbers{
-    ComparedNumber{[](const EndRecord& end) { return end.loads.twist_angle.value; }, true, false,
-                   [](const EndRecord& end) {
-                     return or_zero(energy_of(end) / end.loads.moment_limit) +
-                            or_zero(end.loads.displacement.length() / end.contact.contact_radius);
-                   }},
-    ComparedNumber{[](const EndRecord& end) { return end.loads.moment.value; }, true, true,
-                   [](const EndRecord& end) {
-                     const double radius = end.contact.contact_radius;
-                     return or_zero(end.loads.force.length() * radius) +
-                            or_zero(energy_of(end) * radius / end.contact.approach);
-                   }},
-    ComparedNumber{[](const EndRecord& end) { return end.loads.moment_limit.value; }, false, true, no_size},
-    ComparedNumber{[](const EndRecord& end) { return end.contact.normal_load.value; }, false, false, no_size},
-    ComparedNumber{[](const EndRecord& end) { return end.contact.contact_radius.value; }, false, true,
-                   no_size},
-    ComparedNumber{[](const EndRecord& end) { return end.energy.elastic.value; }, false, true, energy_of}};
+double natural_twist(const EndRecord& end) {
+  return or_zero(energy_of(end) / limit_of(end)) + or_zero(end.loads.displacement.length() / radius_of(end));
+}
+
+double natural_moment(const EndRecord& end) {
+  return or_zero(end.loads.force.length() * radius_of(end)) +
+         or_zero(energy_of(end) * radius_of(end) / end.contact.approach);
+}
+
+constexpr std::array kComparedNumbers{ComparedNumber{twist_of, true, false, natural_twist},
+                                      ComparedNumber{moment_of, true, true, natural_moment},
+                                      ComparedNumber{limit_of, false, true, no_size},
+                                      ComparedNumber{load_of, false, false, no_size},
+                                      ComparedNumber{radius_of, false, true, no_size},
+                                      ComparedNumber{elastic_of, false, true, energy_of}};
 
 /// Number of the variant / number of the scene itself.
 double factor(const ComparedNumber& number, Variant variant) {

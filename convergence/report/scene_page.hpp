@@ -8,7 +8,7 @@
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/report/page.hpp"
 #include "convergence/report/validation.hpp"
-#include "convergence/results/verdict_files.hpp"
+#include "convergence/results/markup.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
 
