@@ -51,7 +51,7 @@ int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostr
   result = to_json(found);
   text << study_text(found);
   if (!request.figure.empty()) draw_study(request.figure, result);
-  return failed_runs_text(result).empty() && all_converged(found) ? 0 : 1;
+  return found.failed_runs.count() == 0 && all_converged(found) ? 0 : 1;
 }
 
 int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,

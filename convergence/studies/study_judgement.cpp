@@ -302,7 +302,7 @@ SeriesResult judge_series(const Study& study, const Series& series, const std::v
          .grids = mesh.grids.size(),
          .seconds = number_or(median_seconds(results[i].grids), "no grid of it was solved")});
   }
-  const std::string failures = failed_runs_text(Json{{"failed_runs", judged.failed_runs.json()}});
+  const std::string failures = judged.failed_runs.text();
   for (const Chosen& chosen : quantities)
     judged.quantities.push_back(judge_quantity(chosen, scene, series, results, failures));
   return judged;

@@ -258,8 +258,7 @@ Json to_json(const StudyResult& result) {
 
 std::string study_text(const StudyResult& result) {
   std::string text = fmt::format("{}: {} series\n", result.name, result.series.size());
-  const Json failed{{"failed_runs", result.failed_runs.json()}};
-  if (const std::string failures = failed_runs_text(failed); !failures.empty()) {
+  if (const std::string failures = result.failed_runs.text(); !failures.empty()) {
     text += fmt::format(
         "{}; missing values are shown as \"-\", and the same command tries these runs again\n", failures);
   }
