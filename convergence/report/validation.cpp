@@ -308,7 +308,7 @@ PaperValidation validate(const Validation& request, const fs::path& folder, cons
   PaperValidation paper;
   paper.figures = exact_curves();
   paper.figures.update(
-      Json{{"contact", {{"radius", exact.contact_radius}, {"peak_pressure", exact.peak_pressure}}},
+      Json{{"contact", {{"radius", exact.contact_radius}, {"peak_pressure", exact.normal.peak_pressure}}},
            {"loading_cells", size.loading_cells},
            {"profiles", std::move(profiles)},
            {"loading", results.at("loading")},
