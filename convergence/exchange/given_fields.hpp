@@ -17,7 +17,7 @@ struct GivenFields {
 ///
 ///  1. GivenContact gives the displacements under the field, find_state() the rigid motion and the slip.
 ///  2. The approach and the complementarity follow from the gap under the pressure.
-///  3. describe() adds loads, certificate, energies, resolution.
+///  3. describe_step() adds loads, certificate, energies, resolution.
 ///
 /// The status is converged: the certificate and the errors judge the field. Throws InputError for a history
 /// and where make_model() does; std::invalid_argument for fields that are not the grid's.
