@@ -4,9 +4,13 @@
 #include <gsl/gsl_sf_result.h>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
-#include "analytic/real_function.hpp"
+namespace slipstick::analytic {
+/// A real function of one real variable.
+using RealFunction = std::function<double(double)>;
+}  // namespace slipstick::analytic
 
 /// GSL behind C++ calls: its abort handler off, every status checked, every handle freed.
 namespace slipstick::analytic::gsl {

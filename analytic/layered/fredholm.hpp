@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "analytic/real_function.hpp"
+#include "analytic/gsl.hpp"
 
 /// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the
 /// real axis.
