@@ -166,8 +166,8 @@ double distance_from(const Oracle& exact, const ForeignField& field) {
   double distance = 0.0;
   for (Index cell = 0; cell < x1.size(); ++cell) {
     if (!(field.pressure[cell] > 0.0)) continue;
-    const double radius = exact.radius(x1[cell] + field.centre[0] - exact.centre[0],
-                                       x2[cell] + field.centre[1] - exact.centre[1]);
+    const double radius = exact.radius(x1[cell] + field.centre[0] - exact.place.centre[0],
+                                       x2[cell] + field.centre[1] - exact.place.centre[1]);
     distance += std::abs(field.pressure[cell] - exact.pressure(std::max(radius, 0.35 * field.grid.h1)));
   }
   return distance;

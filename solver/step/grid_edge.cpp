@@ -178,7 +178,7 @@ std::string allowed(const Scene& scene, const Model& model, const Step& step) {
   if (const Surface* const map = find_height_map(scene.surfaces)) {
     return fmt::format(
         "a height map that is larger than the contact, which reaches the outermost points of {}; {}",
-        map->file.string(), ends);
+        map->map.file.string(), ends);
   }
   if (scene.contact.pressure == PressureModel::file) {
     return fmt::format(
