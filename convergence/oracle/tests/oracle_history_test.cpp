@@ -43,7 +43,7 @@ TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
     const std::vector<Oracle> exact = oracles(scene);
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const CarriedLoads carried = loads_carried_by(exact[i]);
-      const double limit = exact[i].moment_limit;
+      const double limit = exact[i].friction.moment_limit;
       const double quadrature_error = i == 0 ? 1e-6 : kQuadratureOverFronts;
       EXPECT_NEAR(exact[i].moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
                   kHistoryTolerance)
@@ -65,10 +65,10 @@ TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
   scene.steps[2].torsion = solver::Twist{-1e-4};
   const std::vector<Oracle> exact = oracles(scene);
   EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kHistoryTolerance);
-  EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kHistoryTolerance);
-  EXPECT_NEAR(exact[1].approach / exact[0].approach, 4.0, kHistoryTolerance);
-  EXPECT_NEAR(exact[1].moment_limit / exact[0].moment_limit, 16.0, kHistoryTolerance);
-  EXPECT_NEAR(exact[1].axis_ratio / exact[0].axis_ratio, 1.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].normal.peak_pressure / exact[0].normal.peak_pressure, 2.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].normal.approach / exact[0].normal.approach, 4.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].friction.moment_limit / exact[0].friction.moment_limit, 16.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].place.axis_ratio / exact[0].place.axis_ratio, 1.0, kHistoryTolerance);
   EXPECT_EQ(exact[2].contact_radius, exact[0].contact_radius);
   EXPECT_EQ(exact[2].twist_angle, -1e-4);
 }
@@ -109,7 +109,7 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
       const CarriedLoads carried = loads_carried_by(exact[i]);
       EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadratureOverFronts) << body << i;
       for (const int axis : {0, 1}) {
-        EXPECT_NEAR(carried.force * exact[i].direction[axis] / friction,
+        EXPECT_NEAR(carried.force * exact[i].place.direction[axis] / friction,
                     scene.steps[i].force[axis] / friction, kQuadratureOverFronts)
             << body << i;
         EXPECT_EQ(exact[i].force[axis], scene.steps[i].force[axis]);
@@ -122,7 +122,7 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   EXPECT_EQ(a.contact_radius, b.contact_radius);
   EXPECT_NEAR(a.stick_radius / b.stick_radius, 1.0, kHistoryTolerance);
   EXPECT_NEAR(a.dissipated, b.dissipated, kHistoryTolerance * std::abs(b.dissipated));
-  EXPECT_NEAR(a.moment, sign * b.moment, kHistoryTolerance * std::abs(b.moment_limit));
+  EXPECT_NEAR(a.moment, sign * b.moment, kHistoryTolerance * std::abs(b.friction.moment_limit));
   EXPECT_NEAR(a.twist_angle, sign * b.twist_angle, kHistoryTolerance * std::abs(b.twist_angle));
   for (const int axis : {0, 1}) {
     EXPECT_NEAR(a.displacement[axis], sign * b.displacement[axis],
@@ -130,9 +130,9 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   }
   for (const double part : {0.1, 0.6, 0.95}) {
     const double r = part * a.contact_radius;
-    const double along = a.direction[0] * b.direction[0] + a.direction[1] * b.direction[1];  // 0: torsion
+    const double along = a.place.direction[0] * b.place.direction[0] + a.place.direction[1] * b.place.direction[1];  // 0: torsion
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
-                kHistoryTolerance * b.reference_bound);
+                kHistoryTolerance * b.friction.reference_bound);
   }
 }
 
@@ -150,7 +150,7 @@ TEST(OracleHistory, StandsWhereTheBodyStands) {
   const std::vector<Oracle> shifted = oracles(scene);
   for (std::size_t i = 0; i < centred.size(); ++i) {
     expect_the_same_state(shifted[i], centred[i], 1.0);
-    EXPECT_EQ(shifted[i].centre, (std::array{1e-4, -2e-4}));
+    EXPECT_EQ(shifted[i].place.centre, (std::array{1e-4, -2e-4}));
   }
 }
 
