@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
   slipstick::solver::keep_freed_blocks();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
-    slipstick::convergence::obey_tie(argc, argv);
+    slipstick::convergence::die_with_parent(argc, argv);
     // Other commands do not share their work: each process does all of it.
     std::optional<JoinedRanks> joined;
     if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) joined.emplace();

@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those of all commands that name a file to be written.
+/// The options of all commands that name an output file.
 constexpr std::array<std::string_view, 8> kOutputs{"--json",  "--fields",        "--figure", "--summary",
                                                    "--junit", "--accuracy-data", "--write",  "--checkpoint"};
-/// What stands before a file's name in `exact --profile`.
+/// Prefix of a file's name in `exact --profile`.
 constexpr std::string_view kProfileFile = "file:";
 
 bool is_output(const CLI::Option& option) {

@@ -12,27 +12,26 @@ class App;
 
 namespace slipstick::convergence {
 
-/// Throws InputError, naming the option and its file, where a command would write to one of the files that it
-/// reads, by this name or another (links, other spellings).
+/// Throws InputError, naming the option and its file, where a command would overwrite one of its input files,
+/// also through a link or another spelling.
 void require_inputs_kept(const CLI::App& command, const std::vector<std::filesystem::path>& inputs);
 
 /// The same of one option and its file.
 void require_input_kept(const std::string& option, const std::string& output,
                         const std::vector<std::filesystem::path>& inputs);
 
-/// The same for the files that the command line names; and where two outputs would be one file, as given or
-/// behind links.
+/// The same for all files that the command line names. Also throws where two outputs are the same file, by
+/// name or through links.
 void require_inputs_kept(const CLI::App& command);
 
-/// What runs a command: `run` with the options that were read into its request.
+/// The function that runs a command: calls `run` with the request into which its options were read.
 template <typename Request, typename Run>
 auto running(const CLI::App* command, const std::shared_ptr<Request>& request, Run run) {
   return [=](std::ostream& text, auto& result) { return run(*command, *request, text, result); };
 }
 
-/// Throws InputError for a first word that is neither an option nor a command, naming the nearest command
-/// that
-/// --help shows.
+/// Throws InputError for a first word that is neither an option nor a command, naming the nearest command of
+/// --help.
 void require_command(const CLI::App& app, int argc, const char* const* argv);
 
 }  // namespace slipstick::convergence

@@ -6,7 +6,6 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/system/machine.hpp"
 #include "convergence/system/run_program.hpp"
@@ -33,7 +32,7 @@ void run_report_script(const std::string& script, const std::vector<std::string>
         "python3-jinja2 python3-h5py; elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
         done));
   }
-  // -I: nobody's PYTHONPATH, PYTHONHOME or folder says what is imported, but for the script's own folder.
+  // -I ignores PYTHONPATH, PYTHONHOME and the working folder; the script imports from its own folder.
   constexpr const char* kRunScript =
       "import runpy, sys; del sys.argv[0]; sys.path.insert(0, sys.argv[0].rpartition('/')[0]); "
       "runpy.run_path(sys.argv[0], run_name='__main__')";
@@ -54,14 +53,10 @@ void require_figure_format(const fs::path& figure) {
   solver::require_place_for(figure);
 }
 
-void draw_solve(const fs::path& figure, const Json& result,
-                const std::function<void(const fs::path&)>& write_fields) {
-  const TemporaryFolder folder;
+void draw_solve(const fs::path& figure, const Json& result, const TemporaryFolder& folder) {
   const fs::path json = folder / "result.json";
-  const fs::path fields = folder / "fields.h5";
   solver::write_whole_file(json, json_text(result));
-  write_fields(fields);
-  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, fields},
+  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, folder / kFieldsFile},
                     "the result is complete");
 }
 

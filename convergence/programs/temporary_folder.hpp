@@ -13,8 +13,8 @@
 
 namespace slipstick::convergence {
 
-/// A folder that goes when this goes, or this process, however that ends: a shell in a session of its own,
-/// which no signal to the process's group reaches, waits for the end of its input and removes the folder.
+/// A folder that the destructor removes. A shell removes it if this process is killed: the shell runs in
+/// another session, which no signal to the process's group reaches, and waits for the end of its input.
 class TemporaryFolder {
  public:
   TemporaryFolder()

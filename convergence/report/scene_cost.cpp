@@ -34,7 +34,7 @@ Json choices(const solver::Scene& scene) {
     try {
       const AccuracyTarget target{wanted, AccuracyOf::twist};
       require_reachable(scene, target);
-      const Json plan = accuracy_plan(scene, target);
+      const Json plan = to_json(accuracy_plan(scene, target));
       for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
         if (plan.contains(key)) row[key] = plan[key];
       }

@@ -47,13 +47,9 @@ std::vector<std::string> coarse_mesh(const Scene& scene, const Meshes& meshes) {
 /// The uncertainty of the answer by the uncertainty of the scene's numbers.
 Json uncertainty(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
                  const std::vector<UncertainInput>& inputs) {
-  const auto cache = std::make_shared<solver::SolveCache>();
-  return uncertainty_json(answer, inputs, [&](const std::vector<std::string>& changed) {
-    std::vector<std::string> overrides = base.overrides;
-    if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
-    overrides.insert(overrides.end(), changed.begin(), changed.end());
-    return to_json(solve_scene(solver::read_scene(base.scene, overrides), {.cache = cache}).record);
-  });
+  SceneFile file{base.scene, base.overrides};
+  if (!meshes.given) file.overrides.push_back(cells_override(scene, meshes.answer.back()));
+  return to_json(uncertainty_of(from_json(answer), inputs, file, {}));
 }
 
 /// Equivalent scenes, coarse meshes, tiny and near-limit loads.
@@ -246,9 +242,9 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   const PageScene at = page_scene(request);
   const auto& [base, scene, size, meshes, own] = at;
   if (!own && !request.uncertain.empty())
-    throw solver::InputError("--uncertain", "not with solver.program; allowed: a scene without a program");
+    throw solver::InputError("--uncertain", "cannot be combined with solver.program; allowed: without it");
   const std::vector<UncertainInput> uncertain =
-      uncertain_inputs(base.scene, base.overrides, request.uncertain);
+      uncertain_inputs({base.scene, base.overrides}, request.uncertain);
   solver::make_folder(folder);
   const fs::path fields = folder / "answer.h5";
   const std::vector<Json> results = solve_answer(base, scene, meshes, fields, pool);

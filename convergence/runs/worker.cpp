@@ -104,7 +104,7 @@ void Worker::start(const RunSpec& run) { program_.feed(text_of(run)); }
 Worker::Event Worker::next() {
   if (program_.read_on()) return Event::ended;
   if (!program_.captured().ends_with(kFinished)) return Event::output;
-  program_.forget_captured();
+  program_.clear_captured();
   return Event::finished;
 }
 

@@ -23,21 +23,21 @@ using solver::Index;
 using solver::InputError;
 using solver::Scene;
 
-/// A mesh is made finer by what the reached error suggests, and so much more, since errors scatter; by no
-/// more than the second at once, since an error on a coarse mesh may say little.
+/// A mesh is refined by the factor that the reached error suggests times the margin, since errors scatter; at
+/// most by kMaxRefinement at once, since an error on a coarse mesh predicts little.
 constexpr double kRefinementMargin = 1.1;
 constexpr double kMaxRefinement = 4.0;
-/// Cells that a grid without a given extent leaves free around the expected contact, both sides together; and
-/// the fewest cells on which it does.
+/// A grid without a given extent has this many cells outside the expected contact, on both sides together, if
+/// it has at least kMinGridCells.
 constexpr double kFreeCells = 4.0;
 constexpr Index kMinGridCells = 16;
-/// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
-/// much too large that the grids that follow would have no end, and the size of the contact is not known.
+/// Least number of cells across the contact on the coarse grid: with fewer, the extent is so large that the
+/// next grids would be huge, and the size of the contact is unknown.
 constexpr double kMinContactCells = 3.0;
 /// Cells across the contact that the message recommends.
 constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 
-/// The key whose file says the grid; null where it is free.
+/// The key whose file fixes the grid; null: the grid is free.
 const char* grid_owner(const Scene& scene) {
   if (solver::find_height_map(scene.surfaces) != nullptr) return "upper.file";
   if (!scene.contact.friction.map.empty()) return "contact.friction_map";
@@ -49,7 +49,7 @@ bool brings_torsion(const solver::TorsionLoad& load) {
          std::visit([](const auto& kind) { return kind.value != 0.0; }, load);
 }
 
-/// Throws InputError where the contact fills too few cells; of a scene whose grid is free.
+/// Throws InputError if the contact fills too few cells of a free grid.
 void require_contact_seen(const Scene& scene, double pressed, double cells_across) {
   if (cells_across >= kMinContactCells) return;
   throw InputError(
@@ -75,19 +75,24 @@ bool fits_in_memory(const Scene& scene) {
   }
 }
 
-/// Safety of the error that the mesh was chosen for.
+/// The error for which the mesh is chosen.
 double mesh_error(const AccuracyTarget& target, bool estimated) {
   return estimated ? target.of_mesh() / estimation_safety(target.of) : target.of_mesh();
 }
 
 }  // namespace
 
+double AccuracyQuantity::error(const ErrorsRecord& errors) const {
+  if (is_field()) return errors.traction.at_centres.l2;
+  if (name == "stick_radius") return errors.stick_radius;
+  return name == "moment" ? errors.moment : errors.twist;
+}
+
 AccuracyQuantity accuracy_quantity(const Scene& scene, AccuracyOf of) {
-  if (of == AccuracyOf::traction) return {"traction", "traction_error.l2", ""};
-  if (of == AccuracyOf::stick_radius) return {"stick_radius", "stick_radius_error", "stick_radius"};
+  if (of == AccuracyOf::traction) return {"traction", "traction_error.l2"};
+  if (of == AccuracyOf::stick_radius) return {"stick_radius", "stick_radius"};
   const bool imposed = std::holds_alternative<solver::Twist>(scene.steps.back().torsion);
-  return imposed ? AccuracyQuantity{"moment", "moment_error", "moment"}
-                 : AccuracyQuantity{"twist", "twist_error", "twist_angle"};
+  return imposed ? AccuracyQuantity{"moment", "moment"} : AccuracyQuantity{"twist", "twist_angle"};
 }
 
 void require_reachable(const Scene& scene, const AccuracyTarget& target) {
@@ -179,7 +184,7 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
   const Needed needed = needed_for(data, target.of, error);
   AccuracyChoice choice{.cells = cells_for(contact, needed.cells_across),
                         .tolerance = std::max(needed.tolerance, kTightestTolerance)};
-  solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
+  solver::make_model(with_cells(scene, choice.cells));  // throws if it does not fit in memory
   return choice;
 }
 
@@ -195,65 +200,6 @@ std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& c
       .tolerance = std::max(before.tolerance * std::pow(factor, -order), kTightestTolerance)};
   if (!fits_in_memory(with_cells(scene, next.cells))) return std::nullopt;
   return next;
-}
-
-double predicted_seconds(const Scene& scene, const ContactOnGrid& contact) {
-  if (scene.solver.method != solver::Method::coulomb || scene.solver.op != solver::OperatorKind::dcfft) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const double across = cells_across(contact, longer_side(scene));
-  const auto steps = static_cast<double>(scene.steps.size()) * scene.cycles;
-  return steps * work_of(accuracy_data(), across, scene.solver.tolerance) * application_seconds(scene);
-}
-
-Json plan_json(const Scene& scene, int ranks) {
-  Json plan;
-  if (scene.solver.model == solver::ModelChoice::exact) {
-    require_oracle(scene);
-    set_missing(plan, "cells", "the exact solution needs no grid");
-    plan.update({{"unknowns", 0}, {"bytes", 0}, {"least_bytes", 0}});
-    set_missing(plan, "seconds", "the exact solution takes about a millisecond a step");
-    return plan;
-  }
-  const solver::PlannedRanks planned(ranks);
-  const solver::Model model = solver::make_model(scene, ranks > 1 ? planned.ranks() : solver::Ranks());
-  const auto [n1, n2] = std::array{model.grid.n1, model.grid.n2};
-  const ContactOnGrid contact = contact_on_grid(scene);
-  const double radius = 0.5 * cells_across(contact, std::max(n1, n2));
-  const solver::Reduction& part = model.pressure_part;
-  const double mirrored = (part.quadrant() ? 4.0 : 1.0) * (part.diagonal() ? 2.0 : 1.0);
-  plan["cells"] = {n1, n2};
-  plan["tolerance"] = scene.solver.tolerance;
-  plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
-  plan["bytes"] = solver::predicted_memory(scene, model).total();
-  plan["least_bytes"] = solver::predicted_memory(scene, model, {.pressure = 0.0, .tractions = 0.0}).total();
-  if (ranks > 1) {
-    plan["ranks"] = ranks;
-    plan["sent_bytes"] = solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel());
-  }
-  set_number(plan, "seconds", predicted_seconds(scene, contact),
-             "measured for method = \"coulomb\" with operator = \"dcfft\" alone");
-  plan["seconds_from"] = fmt::format(
-      "work measured on the paper's sphere, in applications on {0} x {0} cells timed on this machine",
-      kReferenceCells);
-  return plan;
-}
-
-std::string plan_text(const Json& result) {
-  const Json& plan = result["plan"];
-  if (plan["cells"].is_null()) return text_line("plan", plan["cells_reason"].get<std::string>());
-  const std::string grids =
-      plan.contains("grids") ? fmt::format("{} grids of ", plan["grids"].get<int>()) : "";
-  const bool shared = plan.contains("ranks");
-  const std::string of_rank =
-      shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application",
-                           plan["ranks"].get<int>(), number_text(plan["sent_bytes"]))
-             : "";
-  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}", grids,
-                                       plan["cells"][0].get<int>(), plan["cells"][1].get<int>(),
-                                       number_text(plan["unknowns"]), number_text(plan["least_bytes"]),
-                                       number_text(plan["bytes"]), of_rank, short_text(plan["seconds"]),
-                                       shared ? " on one" : ""));
 }
 
 }  // namespace slipstick::convergence

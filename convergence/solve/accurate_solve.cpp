@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
@@ -19,16 +21,15 @@ namespace {
 using solver::InputError;
 using solver::Scene;
 
-/// Whether the error will have to be estimated from two meshes. The normal contact of an ellipse has an exact
-/// answer, but not its twist.
+/// Whether the error has to be estimated from two meshes. For an ellipse only the normal contact has an exact
+/// answer, not the twist.
 bool is_estimated(const Scene& scene, AccuracyOf of) { return !answers_exactly(scene, of); }
 
-/// How a scene's answer is made: on which meshes, and whether it is a mean over shifted grids.
 struct Approach {
   ContactOnGrid contact;
-  bool smooth;  ///< cell tractions
-  bool shifted;
-  ContactForm form;  ///< of shifted grids
+  bool smooth;       ///< smooth cell tractions
+  bool shifted;      ///< the answer is a mean over shifted grids
+  ContactForm form;  ///< for shifted grids
 };
 
 Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
@@ -49,16 +50,16 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
   return chosen;
 }
 
-/// The part of a target that the length of the steps may take, the largest such part, the largest number of
-/// parts of a step, and the limits of trial solves on few cells: beyond them the error is taken to fall like
-/// one over the number of parts.
+/// Parts of a target for the error by the length of the steps: the usual one and the largest. kMaxSubsteps is
+/// the largest number of parts of a step. Trial solves on few cells find that error: at most kPathTrials,
+/// with at most kPathTrialParts parts in all; beyond them the error is assumed to fall as 1/parts.
 constexpr double kPathPart = 0.4;
 constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
 constexpr std::size_t kPathTrialParts = 300;
 
-/// The relative uncertainty of the wanted number that the length of steps leaves.
+/// Relative uncertainty of the twist, or moment, by the length of the steps.
 double path_of(const solver::Solution& solution) {
   const solver::Resolution& resolved = solution.resolution;
   const double path = resolved.path.*resolved.number;
@@ -66,23 +67,8 @@ double path_of(const solver::Solution& solution) {
   return path > 0.0 ? path / std::abs(turns ? solution.twist_angle : solution.moment) : 0.0;
 }
 
-/// Puts the known error of the number where the answer states its uncertainty.
-void put_uncertainty(EndRecord& end, double mesh, double path) {
-  ResolutionRecord& resolved = end.resolution;
-  const bool turns = resolved.number == "twist_angle";
-  if (!turns && resolved.number != "moment") return;
-  const double value = std::abs(turns ? end.loads.twist_angle : end.loads.moment);
-  if (!std::isfinite(mesh * value)) return;
-  resolved.uncertainty = {mesh + path};
-  resolved.absolute = {(mesh + path) * value};
-  resolved.mesh = {mesh * value};
-  resolved.path = {path * value};
-  (turns ? resolved.paths.twist_angle : resolved.paths.moment) = resolved.path;
-  resolved.warning.clear();
-}
-
-/// As many parts as leave as little as the target allows them, or the most, and what they leave, if that
-/// falls like one over their number.
+/// Sets the number of parts of each step so that their error is within its part of the target, at most
+/// kMaxSubsteps, and the error expected of them, which falls as 1/parts.
 void make_more_parts(Scene& scene, AccuracyTarget& target) {
   const double left = scene.solver.substeps * target.path;
   const double needed = std::ceil(left / (0.8 * kPathPart * target.error));
@@ -90,8 +76,8 @@ void make_more_parts(Scene& scene, AccuracyTarget& target) {
   target.path = std::min(left / scene.solver.substeps, kMaxPathPart * target.error);
 }
 
-/// The scene with as many parts of its steps as the target takes, and in the target what they leave, found on
-/// few cells.
+/// The scene with the number of parts of its steps that the target needs, found on few cells; target.path
+/// gets their error.
 Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
@@ -103,7 +89,7 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
     try {
       path = path_of(solve_with_path(coarse));
     } catch (const InputError&) {
-      return scene;  // the mesh that counts may do better, or says it again
+      return scene;  // the chosen mesh may carry the loads; if not, its solve throws the error
     }
     target.path = path;
     if (!(path > kPathPart * target.error)) return scene;
@@ -116,24 +102,17 @@ const std::string kNoFinerMesh =
     fmt::format("a mesh that would is finer than {} cells across the contact, or does not fit in memory",
                 kMaxCellsAcross);
 
-Json account(const Scene& scene, const AccuracyTarget& target) {
-  Json json{{"wanted", target.error}, {"quantity", accuracy_quantity(scene, target.of).name}};
-  json["reached"] = nullptr;
-  return json;
-}
-
 const char* const kPathNotKnown =
     "the length of the steps changes this number by an unknown amount: compare with a larger solver.substeps";
 
-/// One attempt: its answer, and what is known of its error.
 struct Attempt {
   SolvedScene answer;
   ReachedError reached;
-  double uncertainty;  ///< of a mean over shifted grids; NaN of another answer
-  Json grids;          ///< likewise; else null
-  double path;         ///< what the length of steps leaves open beside it; NaN: not known
+  double uncertainty = NAN;             ///< of a mean over shifted grids
+  std::vector<ShiftedGrid> grids = {};  ///< of a mean over shifted grids
+  double path = 0.0;                    ///< error by the length of the steps; NaN: not known
 
-  /// NaN never is.
+  /// False for NaN.
   bool within(double error) const {
     const double mesh = error - path;
     return reached.error <= mesh && (std::isnan(uncertainty) || uncertainty <= mesh);
@@ -144,12 +123,8 @@ struct Attempt {
 
 Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, const GridSolve& solve) {
   if (!approach.shifted) {
-    Attempt made{.answer = solve(scene, solver::Detail::all),
-                 .reached = {},
-                 .uncertainty = NAN,
-                 .grids = {},
-                 .path = 0.0};
-    made.reached = reached_error(scene, made.answer.solution, to_json(made.answer.record), of);
+    Attempt made{.answer = solve(scene, solver::Detail::all), .reached = {}};
+    made.reached = reached_error(scene, made.answer.solution, made.answer.record.end.errors, of);
     if (of == AccuracyOf::twist) {
       made.path = path_of(made.answer.solution);
     } else if (made.reached.how != "exact" && depends_on_path(scene, made.answer.solution.coupled)) {
@@ -168,11 +143,39 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
   return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids), path};
 }
 
-Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
-  Json json{{"cells", made.answer.record.problem.cells}, {"tolerance", scene.solver.tolerance}};
-  set_number(json, "error", made.reached.error, made.reached.why);
-  json["seconds"] = seconds;
-  if (!made.grids.is_null()) json["grids"] = made.grids;
+AttemptAccount account_of(const Attempt& made, const Scene& scene, double seconds) {
+  return {made.answer.record.problem.cells,
+          scene.solver.tolerance,
+          made.reached.error,
+          made.reached.why,
+          seconds,
+          made.grids};
+}
+
+/// Replaces the stated uncertainty of the twist or moment by the error of mesh and steps. Relative errors.
+void put_uncertainty(EndRecord& end, double mesh, double path) {
+  ResolutionRecord& resolved = end.resolution;
+  const bool turns = resolved.number == "twist_angle";
+  if (!turns && resolved.number != "moment") return;
+  const double value = std::abs(turns ? end.loads.twist_angle : end.loads.moment);
+  if (!std::isfinite(mesh * value)) return;
+  resolved.uncertainty = {mesh + path};
+  resolved.absolute = {(mesh + path) * value};
+  resolved.mesh = {mesh * value};
+  resolved.path = {path * value};
+  (turns ? resolved.paths.twist_angle : resolved.paths.moment) = resolved.path;
+  resolved.warning.clear();
+}
+
+Json attempt_json(const AttemptAccount& attempt) {
+  Json json{{"cells", attempt.cells}, {"tolerance", attempt.tolerance}};
+  set_number(json, "error", attempt.error, attempt.why);
+  json.emplace("seconds", attempt.seconds);
+  Json grids = Json::array();
+  for (const ShiftedGrid& grid : attempt.grids) {
+    grids.push_back({{"extent", grid.extent}, {"value", grid.value}});
+  }
+  if (!grids.empty()) json.emplace("grids", std::move(grids));
   return json;
 }
 
@@ -189,14 +192,14 @@ std::string note_on(const Scene& scene) {
              : "";
 }
 
-Json accuracy_plan(const Scene& given, AccuracyTarget target) {
-  if (given.solver.model == solver::ModelChoice::exact) return plan_json(given);
+SolvePlan accuracy_plan(const Scene& given, AccuracyTarget target) {
+  if (given.solver.model == solver::ModelChoice::exact) return plan_solve(given);
   const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
-  Json plan = plan_json(chosen_scene(scene, approach, first_choice(scene, approach, target)));
+  SolvePlan plan = plan_solve(chosen_scene(scene, approach, first_choice(scene, approach, target)));
   if (!approach.shifted) return plan;
-  plan["grids"] = kShiftedGrids;
-  if (plan["seconds"].is_number()) plan["seconds"] = kShiftedGrids * plan["seconds"].get<double>();
+  plan.grids = kShiftedGrids;
+  plan.seconds *= kShiftedGrids;
   return plan;
 }
 
@@ -205,27 +208,29 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
   const Approach approach = approach_to(scene, target);
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
   std::optional<AccuracyChoice> choice = first_choice(scene, approach, target);
-  AccurateAnswer found{.answer = {}, .accuracy = account(scene, target)};
-  Json attempts = Json::array();
   Attempt made{};
-  std::string stopped = fmt::format("{} refinements did not get there", kMaxRefinements);
+  GridAccuracy account;
+  account.not_reached = fmt::format("the error is too large after {} refinements", kMaxRefinements);
   for (int refinement = 0; refinement <= kMaxRefinements; ++refinement) {
     const Scene chosen = chosen_scene(scene, approach, *choice);
     const auto start = std::chrono::steady_clock::now();
     made = attempt(chosen, approach, target.of, solve);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    attempts.push_back(attempt_json(made, chosen, seconds));
-    found.reached = made.within(target.error);
-    if (found.reached) break;
+    account.attempts.push_back(account_of(made, chosen, seconds));
+    if (made.within(target.error)) {
+      account.not_reached.reset();
+      break;
+    }
     if (std::isnan(made.path) && made.reached.error <= target.error) {
-      stopped = kPathNotKnown;
+      account.not_reached = kPathNotKnown;
       break;
     }
     target.path = std::isnan(made.path) ? 0.0 : made.path;
     if (made.path > kPathPart * target.error) {
       if (!(made.path < target.error) && (scene.solver.substeps >= kMaxSubsteps || std::isinf(made.path))) {
-        stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps",
-                              scene.solver.substeps, made.path);
+        account.not_reached =
+            fmt::format("steps in {} parts have an error of {:.2g}; divide the loads into more steps",
+                        scene.solver.substeps, made.path);
         break;
       }
       make_more_parts(scene, target);
@@ -233,28 +238,23 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     }
     choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {
-      stopped = std::isfinite(made.reached.error) ? kNoFinerMesh : made.reached.why;
+      account.not_reached = std::isfinite(made.reached.error) ? kNoFinerMesh : made.reached.why;
       break;
     }
   }
-  if (!found.reached) found.accuracy["not_reached"] = stopped;
-  const bool known = !std::isnan(made.path);
-  set_number(found.accuracy, "reached", made.reached.error + made.path,
-             known ? made.reached.why : kPathNotKnown);
-  set_number(found.accuracy, "path", made.path,
-             known ? "more parts of the steps do not carry these loads" : kPathNotKnown);
-  found.accuracy["substeps"] = scene.solver.substeps;
-  found.accuracy.update(
-      {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});
-  if (approach.shifted) set_number(found.accuracy, "uncertainty", made.uncertainty, made.reached.why);
-  found.accuracy["replaced"] = {{"cells", scene.grid.cells}, {"tolerance", scene.solver.tolerance}};
-  if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
-  found.answer = std::move(made.answer);
-  if (target.of == AccuracyOf::twist) put_uncertainty(found.answer.record.end, made.to_lower(), made.path);
-  return found;
+  account.path = made.path;
+  account.substeps = scene.solver.substeps;
+  if (approach.shifted) account.uncertainty = made.uncertainty;
+  account.replaced_cells = scene.grid.cells;
+  account.replaced_tolerance = scene.solver.tolerance;
+  account.note = note_on(scene);
+  if (target.of == AccuracyOf::twist) put_uncertainty(made.answer.record.end, made.to_lower(), made.path);
+  return {
+      std::move(made.answer),
+      {target.error, accuracy_quantity(scene, target.of).name, std::move(made.reached), std::move(account)}};
 }
 
-Json exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
+Accuracy exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
   const Oracle oracle = require_oracle(scene);
   if (!(oracle.relative_uncertainty <= target.error)) {
     throw InputError(
@@ -262,45 +262,58 @@ Json exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
         fmt::format("allowed: {:.2g} or more, the exact answer's own uncertainty in double precision",
                     oracle.relative_uncertainty));
   }
-  Json json = account(scene, target);
-  json.update({{"reached", oracle.relative_uncertainty},
-               {"how", "exact"},
-               {"why", "the exact solution needs no grid; this is its own uncertainty"},
-               {"attempts", Json::array()}});
+  return {
+      target.error,
+      accuracy_quantity(scene, target.of).name,
+      {oracle.relative_uncertainty, "exact", "the exact solution needs no grid; this is its own uncertainty"},
+      {}};
+}
+
+Json to_json(const Accuracy& accuracy) {
+  const std::string& why = accuracy.reached.why;
+  Json json{{"wanted", accuracy.target}, {"quantity", accuracy.quantity}};
+  set_number(json, "reached", accuracy.error(), std::isnan(accuracy.path()) ? kPathNotKnown : why);
+  json.update({{"how", accuracy.reached.how}, {"why", why}, {"attempts", Json::array()}});
+  if (!accuracy.grid) return json;
+  const GridAccuracy& grid = *accuracy.grid;
+  Json attempts = Json::array();
+  for (const AttemptAccount& attempt : grid.attempts) attempts.push_back(attempt_json(attempt));
+  if (grid.not_reached) json.emplace("not_reached", *grid.not_reached);
+  set_number(json, "path", grid.path,
+             std::isnan(grid.path) ? kPathNotKnown : "more parts of the steps do not carry these loads");
+  json.update({{"substeps", grid.substeps},
+               {"attempts", std::move(attempts)},
+               {"replaced", {{"cells", grid.replaced_cells}, {"tolerance", grid.replaced_tolerance}}}});
+  if (grid.uncertainty) set_number(json, "uncertainty", *grid.uncertainty, why);
+  if (!grid.note.empty()) json.emplace("note", grid.note);
   return json;
 }
 
-std::string accuracy_text(const Json& result) {
-  const Json& accuracy = result["accuracy"];
-  std::string text = text_line(
-      "accuracy", fmt::format("{} of the {}, {} wanted ({}: {})", short_text(accuracy["reached"]),
-                              accuracy["quantity"].get<std::string>(), number_text(accuracy["wanted"]),
-                              accuracy["how"].get<std::string>(), accuracy["why"].get<std::string>()));
-  if (accuracy.contains("uncertainty")) {
+std::string accuracy_text(const Accuracy& accuracy) {
+  std::string text =
+      text_line("accuracy", fmt::format("{} of the {}; target {} ({}: {})", short_text(accuracy.error()),
+                                        accuracy.quantity, number_text(accuracy.target), accuracy.reached.how,
+                                        accuracy.reached.why));
+  if (!accuracy.grid) return text;
+  const GridAccuracy& grid = *accuracy.grid;
+  if (grid.uncertainty) {
     text += text_line("uncertainty", fmt::format("{} of it (95 %), the mean of {} grids",
-                                                 short_text(accuracy["uncertainty"]), kShiftedGrids));
+                                                 short_text(*grid.uncertainty), kShiftedGrids));
   }
-  if (accuracy.value("substeps", 1) > 1) {
-    text += text_line("steps", fmt::format("each in {} parts, which leave {} open",
-                                           accuracy["substeps"].get<int>(), short_text(accuracy["path"])));
+  if (grid.substeps > 1) {
+    text += text_line("steps", fmt::format("each in {} parts, which have an error of {}", grid.substeps,
+                                           short_text(grid.path)));
   }
-  if (accuracy.contains("not_reached")) {
-    text += text_line("not reached", accuracy["not_reached"].get<std::string>());
+  if (grid.not_reached) text += text_line("not reached", *grid.not_reached);
+  for (const AttemptAccount& attempt : grid.attempts) {
+    text += text_line("attempt", fmt::format("{} x {} cells, tolerance {}: error {}, {} s", attempt.cells[0],
+                                             attempt.cells[1], short_text(attempt.tolerance),
+                                             short_text(attempt.error), short_text(attempt.seconds)));
   }
-  for (const Json& attempt : accuracy["attempts"]) {
-    text += text_line(
-        "attempt", fmt::format("{} x {} cells, tolerance {}: error {}, {} s", attempt["cells"][0].get<int>(),
-                               attempt["cells"][1].get<int>(), short_text(attempt["tolerance"]),
-                               short_text(attempt["error"]), short_text(attempt["seconds"])));
-  }
-  if (accuracy.contains("replaced")) {
-    const Json& replaced = accuracy["replaced"];
-    text +=
-        text_line("replaced", fmt::format("grid.cells = [{}, {}] and solver.tolerance = {} of the scene",
-                                          replaced["cells"][0].get<int>(), replaced["cells"][1].get<int>(),
-                                          short_text(replaced["tolerance"])));
-  }
-  if (accuracy.contains("note")) text += text_line("note", accuracy["note"].get<std::string>());
+  text += text_line("replaced", fmt::format("grid.cells = [{}, {}] and solver.tolerance = {} of the scene",
+                                            grid.replaced_cells[0], grid.replaced_cells[1],
+                                            short_text(grid.replaced_tolerance)));
+  if (!grid.note.empty()) text += text_line("note", grid.note);
   return text;
 }
 

@@ -21,9 +21,9 @@ namespace {
 using namespace solver;
 
 constexpr const char* kFormat = "slipstick history 2";
-/// The part of the time that may go into writing.
+/// Largest part of the time spent on writing.
 constexpr double kWritingPart = 0.01;
-/// Values of a dataset: those of the largest grid that is solved, twice.
+/// Limit on the values of a dataset: twice the cells of the largest grid that is solved.
 constexpr Eigen::Index kMaxValues = Eigen::Index{1} << 33;
 
 Json normal_json(const NormalSolution& normal) {
@@ -76,7 +76,7 @@ Json open_json(const solver::OpenHistory& open) {
   return json;
 }
 
-/// JSON has null for what is infinite.
+/// Infinite numbers are null in JSON.
 std::vector<double> numbers_of(const Json& json) {
   std::vector<double> numbers;
   for (const Json& at : json) {
@@ -85,7 +85,7 @@ std::vector<double> numbers_of(const Json& json) {
   return numbers;
 }
 
-/// A checksum of the bits of all numbers and of the text: a file that was changed is refused.
+/// A checksum of the bits of all numbers and of the text, which detects a changed file.
 std::string sum_of(const ContactState& contact, const std::string& text) {
   std::uint64_t sum = checksum(text);
   for (const Eigen::ArrayXd* const field : {&contact.normal.pressure, &contact.traction, &contact.slip}) {

@@ -11,20 +11,21 @@
 
 namespace slipstick::convergence {
 
-/// Where a history stands, on disk (HDF5), so that one that was killed goes on after a finished step. A file
-/// counts for the same scene, options and inputs, and the same program: only then the digits are those of a
-/// history that was not interrupted.
+/// The state of a history on disk (HDF5), from which a killed history resumes after its last finished step. A
+/// file is valid for the same scene, options, input files and executable, so that a resumed history has the
+/// digits of an uninterrupted one.
 class Checkpoint {
  public:
   Checkpoint(std::filesystem::path file, const PreparedRun& run);
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// The content of the file; null where there is none. Throws InputError for a file of another scene or
-  /// program, and one that is damaged.
+  /// The content of the file; null: there is no file. Throws InputError for a file of another scene or
+  /// executable and for a damaged file.
   std::shared_ptr<const FinishedSteps> read() const;
 
-  /// Replaces the file by one that holds this, whole on the disk. Throws InputError where it cannot.
+  /// Replaces the file in one step, so that a complete file is always on disk. Throws InputError if that
+  /// fails.
   void write(const solver::HistoryState& state, const std::vector<StepRecord>& steps) const;
 
  private:
@@ -33,7 +34,8 @@ class Checkpoint {
   std::string program_;  ///< identifies the executable
 };
 
-/// Writes a checkpoint after the first step, and then whenever writing takes little of the time that went by.
+/// Writes a checkpoint after the first step, then whenever writing takes at most 1 % of the time since the
+/// last.
 class PacedCheckpoint {
  public:
   explicit PacedCheckpoint(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}
@@ -43,7 +45,7 @@ class PacedCheckpoint {
   using Clock = std::chrono::steady_clock;
 
   const Checkpoint& checkpoint_;
-  Clock::duration took_{};  ///< the last one
+  Clock::duration took_{};  ///< to write the last checkpoint
   Clock::time_point written_{};
 };
 

@@ -10,8 +10,8 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Rounds, of which the quickest counts, and seconds that each takes at least: a round that nothing else
-/// disturbs is likely among them.
+/// Number of timed rounds, and least seconds of a round. The quickest round counts: it is likely undisturbed
+/// by other processes.
 constexpr int kRounds = 7;
 constexpr double kRoundSeconds = 2e-4;
 
@@ -30,7 +30,7 @@ double round_seconds(solver::LinearOperator& op, const Eigen::ArrayXd& in, Eigen
   return seconds_since(start) / applications;
 }
 
-/// In the proportions of the scene's own.
+/// Keeps the ratio of the sides.
 void set_reference_cells(solver::Scene& scene) {
   const solver::Index longer = std::max(scene.grid.cells[0], scene.grid.cells[1]);
   if (longer == 0) return;  // a height map's

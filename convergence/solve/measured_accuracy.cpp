@@ -42,7 +42,7 @@ const MeasuredError& at(const MeasuredMesh& mesh, AccuracyOf of) {
   return mesh.errors[static_cast<std::size_t>(of)];
 }
 
-/// The pair of neighbouring meshes to interpolate between, by the place of the finer one.
+/// Index of the finer of the two neighbouring meshes between which to interpolate.
 template <typename Reached>
 std::size_t finer_of_pair(const AccuracyData& data, Reached reached) {
   std::size_t i = 1;
@@ -50,7 +50,8 @@ std::size_t finer_of_pair(const AccuracyData& data, Reached reached) {
   return i;
 }
 
-/// Work on one mesh; between its tolerances linear in their logarithm, as the digits that iterations gain.
+/// Work on one mesh, linear in log(tolerance) between its tolerances: iterations gain digits at a constant
+/// rate.
 double work_on(const MeasuredMesh& mesh, double tolerance) {
   const auto& t = mesh.tolerances;
   if (tolerance >= t.front()) return mesh.work.front();
@@ -86,11 +87,19 @@ AccuracyData accuracy_data() {
 
 std::string accuracy_toml(const AccuracyData& data, const std::string& origin) {
   std::string text = fmt::format(
-      "# Errors of smooth contacts in torsion, and what solves cost; what `slipstick solve --accuracy` picks "
-      "by.\n# {}\n# cells_across: the contact's diameter over a cell's side. error: relative, the largest "
-      "over the loads and over\n# finer meshes. tolerance: the loosest that changes it by at most a tenth. "
-      "applications, work: at each of the\n# tolerances, the most over the loads; work is the seconds of a "
-      "whole solve over those of one application on\n# 64 x 64 cells.\nversion = 1\n",
+      "# Errors of smooth contacts in torsion and work of their solves, by which `slipstick solve "
+      "--accuracy` "
+      "chooses a mesh.\n"
+      "# {}\n"
+      "# cells_across: the contact's diameter over a cell's side. error: relative, the largest over the "
+      "loads and "
+      "over\n"
+      "# finer meshes. tolerance: the loosest that changes it by at most a tenth. applications, work: at "
+      "each of "
+      "the\n"
+      "# tolerances, the most over the loads. Unit of work: the seconds of one application on 64 x 64 "
+      "cells.\n"
+      "version = 1\n",
       origin);
   for (const MeasuredMesh& mesh : data.meshes) {
     text += fmt::format("\n[[mesh]]\ncells_across = {:.5g}\n", mesh.cells_across);
@@ -110,7 +119,7 @@ Needed needed_for(const AccuracyData& data, AccuracyOf of, double error) {
   if (error >= at(coarsest, of).error) return {coarsest.cells_across, at(coarsest, of).tolerance};
   if (error < at(finest, of).error) {
     const double finer = std::pow(at(finest, of).error / error, 1.0 / falling_order(data, of));
-    // What the iteration may leave falls as what the mesh leaves.
+    // The tolerance falls in proportion to the error.
     return {finest.cells_across * finer, at(finest, of).tolerance * error / at(finest, of).error};
   }
   const std::size_t i =
@@ -137,7 +146,7 @@ double error_with(const AccuracyData& data, AccuracyOf of, double across) {
 }
 
 double falling_order(const AccuracyData& data, AccuracyOf of) {
-  // Two meshes apart where there are so many: neighbours' errors scatter.
+  // From the third finest mesh, if there is one: errors of neighbouring meshes scatter.
   const std::size_t back = std::min<std::size_t>(data.meshes.size(), 3);
   const MeasuredMesh& coarse = data.meshes[data.meshes.size() - back];
   const MeasuredMesh& fine = data.meshes.back();

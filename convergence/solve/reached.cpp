@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
-#include "convergence/results/quantity.hpp"
 #include "solver/grid/grid_transfer.hpp"
 
 namespace slipstick::convergence {
@@ -21,16 +19,15 @@ using solver::Solution;
 /// Safety factors (Roache 1998) of a number from two meshes, and of a norm of differences.
 constexpr double kTwoMeshes = 3.0;
 constexpr double kOfNorm = 1.25;
-/// The order that is taken where theory gives none, as on rough surfaces.
+/// Order of convergence where theory gives none, as on rough surfaces.
 constexpr double kCautiousOrder = 1.0;
 
 double order_of(const AccuracyQuantity& quantity, const Scene& scene) {
-  const std::string path = quantity.value.empty() ? quantity.error : quantity.value;
-  const double order = expected_order(path, scene).value;
+  const double order = expected_order(quantity.path, scene).value;
   return std::isfinite(order) ? order : kCautiousOrder;
 }
 
-/// The same rectangle, in half as many cells along each side.
+/// The same rectangle with half as many cells along each side.
 Scene half_as_fine(const Scene& scene, const solver::Grid& grid) {
   Scene coarse = scene;
   const solver::Grid half = solver::coarser(grid);
@@ -39,8 +36,8 @@ Scene half_as_fine(const Scene& scene, const solver::Grid& grid) {
   return coarse;
 }
 
-/// The measured error of smooth contacts on a mesh like this: two meshes may agree by luck, since
-/// errors of single numbers change their sign from mesh to mesh.
+/// The measured error of smooth contacts on such a mesh. Two meshes may agree by chance, since the error of a
+/// number changes its sign from mesh to mesh.
 double usual_error(const Solution& solution, AccuracyOf of) {
   const double side = std::sqrt(solution.grid.cell_area());
   return error_with(accuracy_data(), of, 2.0 * solution.contact_radius / side);
@@ -69,19 +66,20 @@ double field_error(const Solution& fine, const Solution& coarse, double order) {
 
 double estimation_safety(AccuracyOf of) { return of == AccuracyOf::traction ? kOfNorm : kTwoMeshes; }
 
-ReachedError reached_error(const Scene& scene, const Solution& solution, const Json& result, AccuracyOf of) {
+ReachedError reached_error(const Scene& scene, const Solution& solution, const ErrorsRecord& errors,
+                           AccuracyOf of) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const AccuracyQuantity quantity = accuracy_quantity(scene, of);
   if (solution.status != solver::Status::converged) return {unknown, "exact", solution.message};
-  const double error = std::abs(number_at(result, quantity.error));
+  const double error = std::abs(quantity.error(errors));
   if (std::isfinite(error)) return {error, "exact", "against the exact answer"};
   const Solution coarse = solver::solve(half_as_fine(scene, solution.grid));
   if (coarse.status != solver::Status::converged) {
     return {unknown, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
   }
   const double order = order_of(quantity, scene);
-  const double estimate = quantity.value.empty() ? field_error(solution, coarse, order)
-                                                 : number_error(solution, coarse, quantity.value, order);
+  const double estimate = quantity.is_field() ? field_error(solution, coarse, order)
+                                              : number_error(solution, coarse, quantity.path, order);
   if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or its error, is zero"};
   return {std::max(estimate, usual_error(solution, of)), "estimated",
           fmt::format("from {} x {} cells, order {}", coarse.grid.n1, coarse.grid.n2, order)};

@@ -5,22 +5,22 @@
 
 namespace slipstick::convergence {
 
-/// The safety factor of an estimated error: the mesh for a target is chosen for the target over this.
+/// Safety factor of an estimated error.
 double estimation_safety(AccuracyOf of);
 
-/// The error that a solve left, and how that is known.
+/// The error of a solve, and its basis.
 struct ReachedError {
   double error;     ///< relative, not negative; NaN where it is not known
   std::string how;  ///< exact | estimated
-  std::string why;  ///< what it was estimated from, or why it is not known
+  std::string why;  ///< basis of the estimate, or why the error is not known
 };
 
-/// Against the exact answer where the result has an error against it; else from a second solve on half as
-/// many cells over the same extent. The error of a number is the distance of the two over r^p - 1, with
-/// Roache's safety factor 3 (1998; two meshes show no order p, so the theory's is taken); that of the
-/// tractions is their difference on the coarser cells in the root mean square, where nothing cancels,
-/// with 1.25. Never less than what smooth contacts were measured to err by on such a mesh.
-ReachedError reached_error(const solver::Scene& scene, const solver::Solution& solution, const Json& result,
-                           AccuracyOf of);
+/// The error against the exact answer, if `errors` has it. Else an estimate from a second solve on half as
+/// many cells over the same extent. For a number it is the difference of the two over r^p - 1 with the
+/// theoretical order p, times Roache's safety factor 3 (1998) for two meshes. For the tractions it is the
+/// root mean square of the differences on the coarser cells over r^p - 1, in which nothing cancels,
+/// times 1.25. It is at least the error measured for smooth contacts on such a mesh.
+ReachedError reached_error(const solver::Scene& scene, const solver::Solution& solution,
+                           const ErrorsRecord& errors, AccuracyOf of);
 
 }  // namespace slipstick::convergence

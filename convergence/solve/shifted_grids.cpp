@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/make_record.hpp"
@@ -19,15 +18,15 @@ namespace {
 using solver::InputError;
 using solver::Scene;
 
-/// The relative uncertainty of a mean's twist is R^-kShiftedOrder times the root of the sum of the squares of
-/// these, where R is the contact's radius in cells on its finest grid, and c R that of the stick area: of the
-/// staircase along the stick area's edge kFront/c, and kCurvedFront/(c^2 R) since that is a curve; of a
-/// narrow slip ring of s = 1 - c kNarrowSlip/s, and kRingInCell/(s^2 R) where it is a part of a cell,
-/// together at most kNoRing R; of a tip, which stands on a cell's corner in all grids, kTip/(c^2 sqrt(R)). In
-/// a slender contact the stick area's shape differs from the contact's, and all grids err alike: its longer
-/// over its shorter axis is a factor to the first part. Set by 364 random spheres, cones, punches with round
-/// corners and powers at 0.05 to 0.99 of the limit, on five to eight meshes each with R from 4 to 400, so
-/// that it covers 95 of 100 errors.
+/// The relative uncertainty of a mean's twist is R^-kShiftedOrder sqrt(front^2 + slip^2 + tip^2), where R is
+/// the contact's radius and c R the stick radius in cells of the finest grid, and s = 1 - c. front = e
+/// sqrt(kFront^2 + (kCurvedFront/(c R))^2)/c: the staircase along the curved edge of the stick area. e is the
+/// longer over the shorter axis of the contact: in a slender contact the shapes of stick area and contact
+/// differ, and all grids have the same error.
+/// slip = sqrt(kNarrowSlip^2 + (kRingInCell/(s R))^2)/s, at most kNoRing R: a narrow slip ring.
+/// tip = kTip/(c^2 sqrt(R)): a tip of the surface, which is at a cell's corner in all grids.
+/// The constants cover 95 of 100 errors of 364 random spheres, cones, punches with round corners and powers
+/// at 0.05 to 0.99 of the limit, on five to eight meshes each with R from 4 to 400.
 constexpr double kFront = 0.15;
 constexpr double kCurvedFront = 0.85;
 constexpr double kNarrowSlip = 0.05;
@@ -35,27 +34,28 @@ constexpr double kRingInCell = 0.015;
 constexpr double kNoRing = 0.62;
 constexpr double kTip = 0.88;
 constexpr double kMinStickRatio = 0.02;
-/// It is never less than so much of the scatter (standard deviation) of the grids, which changes 1 of 100 of
-/// them.
+/// The uncertainty is at least this part of the scatter (standard deviation) of the grids; that changes 1 of
+/// 100.
 constexpr double kOfScatter = 0.2;
-/// Where they are no data the scatter is added, which is usually twice the uncertainty.
+/// Where the data do not apply the scatter is added, which is usually twice the uncertainty.
 constexpr double kBeyondData = 3.0;
-/// Cells across the contact of the first mesh that is tried, and the factor to the next.
+/// Cells across the contact of the first mesh of the search, and the factor to the next mesh.
 constexpr double kMinAcrossShifted = 12.0;
 constexpr double kFiner = 1.02;
-/// The tolerance (gap over energy): its ratio to the wanted error, and the loosest. A twist is off by a
-/// fiftieth of it at most, on 120 grids.
+/// The tolerance (gap over energy): its ratio to the target error, and the loosest. On 120 grids it changed
+/// the twist by at most a fiftieth of itself, relative.
 constexpr double kToleranceOfError = 1.0;
 constexpr double kLoosest = 1e-4;
-/// Cells along the longer side of the coarse grid; and of a finer one where a slip ring is a part of a cell
-/// on that, below this width over the contact's radius, and much finer grids follow.
+/// Cells along the longer side of the grid that estimates the contact's form, and of a finer one. The finer
+/// one is used if the slip ring is narrower than kNarrowRing times the contact's radius, less than a cell,
+/// and the target needs much finer grids.
 constexpr solver::Index kFormCells = 40;
 constexpr solver::Index kFinerFormCells = 160;
-/// Parts of all steps that are solved on it; a longer history takes fewer for each step.
+/// Largest number of parts of all steps together in that solve.
 constexpr long kFormParts = 300;
 constexpr double kNarrowRing = 0.06;
-/// The smallest stick radius in cells by which grids are spread, so that none is much coarser than the
-/// others.
+/// Least stick radius, in cells, in the formula for the spread of the grids: bounds the difference of their
+/// cells.
 constexpr double kMinSpreadStickCells = 4.0;
 
 bool has_tip(const Scene& scene) {
@@ -77,8 +77,8 @@ double expected_uncertainty(const Scene& scene, double across, const ContactForm
   return std::hypot(front, slip, tip) * std::pow(radius, -kShiftedOrder);
 }
 
-/// Whether those data say little: a history's numbers are differences, whose errors add up, and shapes side
-/// by side have more than one stick area.
+/// Whether the data do not apply: errors add up in a history, whose numbers are differences, and shapes side
+/// by side have several stick areas.
 bool is_beyond_data(const Scene& scene) {
   return has_history(scene) || (scene.surfaces.size() > 1 && scene.combine == solver::Combine::nearest);
 }
@@ -103,7 +103,7 @@ double slenderness(const solver::Solution& solution) {
   return std::sqrt((mean + apart) / (mean - apart));
 }
 
-/// From a coarse grid, as far as that can say.
+/// The form of the contact on a grid with `cells` along its longer side; defaults where the solve fails.
 ContactForm form_on(const Scene& scene, solver::Index cells) {
   ContactForm form;
   try {
@@ -116,12 +116,12 @@ ContactForm form_on(const Scene& scene, solver::Index cells) {
     const double slender = slenderness(coarse);
     if (slender >= 1.0 && std::isfinite(slender)) form.slender = slender;
   } catch (const InputError&) {
-    // the mesh that counts may do better, or says it again
+    // the chosen mesh may carry the loads; if not, its solve throws the error
   }
   return form;
 }
 
-/// Cells across the contact that are expected to reach the target, or the most.
+/// Cells across the contact that are expected to reach the target, at most kMaxCellsAcross.
 double across_for(const Scene& scene, const AccuracyTarget& target, const ContactForm& form) {
   double across = kMinAcrossShifted;
   while (across < kMaxCellsAcross && expected_error(scene, across, form) > target.of_mesh()) {
@@ -130,7 +130,7 @@ double across_for(const Scene& scene, const AccuracyTarget& target, const Contac
   return std::min(across, kMaxCellsAcross);
 }
 
-/// The scene's grid, and larger ones of as many cells.
+/// The scene's grid, and larger ones with the same number of cells.
 std::vector<Scene> shifted(const Scene& scene, double stick_cells) {
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kMinSpreadStickCells));
@@ -157,9 +157,9 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-bool is_moment(const AccuracyQuantity& quantity) { return quantity.value == "moment"; }
+bool is_moment(const AccuracyQuantity& quantity) { return quantity.name == "moment"; }
 
-/// The number itself, and its form without dimension.
+/// Gives a result the mean as its quantity, also in dimensionless form, and the error of the mean.
 void put_mean(EndRecord& end, const AccuracyQuantity& quantity, double mean, double error) {
   Number& value = is_moment(quantity) ? end.loads.moment : end.loads.twist_angle;
   Number& scaled = is_moment(quantity) ? end.loads.moment_ratio : end.loads.twist;
@@ -194,7 +194,7 @@ AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, 
   AccuracyChoice choice{
       .cells = cells_for(contact, across_for(scene, target, form), 2),
       .tolerance = std::clamp(kToleranceOfError * target.error, kTightestTolerance, kLoosest)};
-  solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
+  solver::make_model(with_cells(scene, choice.cells));  // throws if it does not fit in memory
   return choice;
 }
 
@@ -204,11 +204,10 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   const double radius = 0.5 * cells_across(contact, std::max(scene.grid.cells[0], scene.grid.cells[1]));
   const std::vector<Scene> scenes = shifted(scene, form.stick_ratio * radius);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  ShiftedMean found{
-      .answer = {}, .error = unknown, .uncertainty = unknown, .why = {}, .grids = Json::array()};
+  ShiftedMean found{.answer = {}, .error = unknown, .uncertainty = unknown, .why = {}, .grids = {}};
   std::vector<double> values;
   std::vector<double> errors;
-  // The smallest cells come last, so that what a solve writes beside its result is theirs.
+  // The grid with the smallest cells comes last, since the last solve leaves the files of fields.
   for (auto grid = scenes.rbegin(); grid != scenes.rend(); ++grid) {
     const bool last = grid + 1 == scenes.rend();
     found.answer = solve(*grid, last ? solver::Detail::all : solver::Detail::loads);
@@ -219,8 +218,8 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
     }
     const EndRecord& end = found.answer.record.end;
     values.push_back(is_moment(quantity) ? end.loads.moment : end.loads.twist_angle);
-    errors.push_back(is_moment(quantity) ? end.errors.moment : end.errors.twist);
-    found.grids.push_back({{"extent", *grid->grid.extent}, {"value", values.back()}});
+    errors.push_back(quantity.error(end.errors));
+    found.grids.push_back({*grid->grid.extent, values.back()});
   }
   const Moments moments = moments_of(values);
   found.error = moments_of(errors).mean;
@@ -229,8 +228,7 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   // The sum covers 96 of 100 errors of 60 random histories of torsion on four meshes each.
   found.uncertainty = is_beyond_data(scene) ? expected + scatter : std::max(kOfScatter * scatter, expected);
   found.why =
-      fmt::format("by what is known of such meshes, and the scatter of the {} grids whose mean it is, {:.2g}",
-                  values.size(), scatter);
+      fmt::format("by data on such meshes and the scatter of {} grids, {:.2g}", values.size(), scatter);
   SolveRecord& record = found.answer.record;
   put_mean(record.end, quantity, moments.mean, found.error);
   if (record.history) put_mean(record.history->steps.back().end, quantity, moments.mean, found.error);

@@ -1,91 +1,229 @@
-#include "convergence/commands.hpp"
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "convergence/commands.hpp"
+#include "convergence/programs/output_options.hpp"
+#include "convergence/programs/python_script.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/measured_accuracy.hpp"
 #include "convergence/solve/solve_request.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-/// Which model answers, how accurately, and what is said before or beside the answer.
-void add_accuracy_options(CLI::App& command, SolveRequest& request) {
+using solver::InputError;
+using solver::Scene;
+
+/// The options as the command line gives them.
+struct SolveWords {
+  SceneFile source;
+  bool allow_programs = false;
+  std::string model;               ///< word of solver.model; empty: the scene's
+  std::optional<double> accuracy;  ///< relative error to reach
+  std::string accuracy_of = "twist";
+  std::vector<std::string> uncertain;  ///< "key=P%"
+  bool plan = false;
+  int planned_ranks = 1;
+  AnswerFiles files;
+  CheckpointFile checkpoint;  ///< file empty: none
+  std::string keep;           ///< folder for the results of a pool's worker; empty: none
+  solver::Ranks ranks;        ///< that share the solve
+};
+
+void add_accuracy_options(CLI::App& command, SolveWords& words) {
   command.add_option(
-      "--model", request.model,
+      "--model", words.model,
       "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
       "axisymmetric scene); as --set solver.model=...");
-  command.add_option(
-      "--accuracy", request.accuracy,
-      "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless said, the model; "
-      "says what was reached");
-  std::vector<std::string> words;
-  for (const auto& [word, of] : accuracy_words()) words.push_back(word);
+  command.add_option("--accuracy", words.accuracy,
+                     "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless "
+                     "solver.model is given, the model; the result has the error that was reached");
+  std::vector<std::string> quantities;
+  for (const auto& [word, of] : accuracy_words()) quantities.push_back(word);
   command
-      .add_option("--accuracy-of", request.accuracy_of,
-                  "what --accuracy is asked of; where the twist is imposed, twist means the moment")
-      ->check(CLI::IsMember(words))
+      .add_option(
+          "--accuracy-of", words.accuracy_of,
+          "quantity whose error --accuracy bounds; where the twist is imposed, twist means the moment")
+      ->check(CLI::IsMember(quantities))
       ->capture_default_str();
   command
-      .add_option("--uncertain", request.uncertain,
+      .add_option("--uncertain", words.uncertain,
                   "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5% "
-                  "young_modulus=2%; says what they make of each output, beside the numerical error")
+                  "young_modulus=2%; the result has the uncertainty of each output and its numerical error")
       ->excludes(command.get_option("--accuracy"));
-  command.add_flag("--plan", request.plan, "predict memory and time of what would be solved, and stop")
+  command.add_flag("--plan", words.plan, "predict memory and time of the solve, and stop")
       ->excludes(command.get_option("--uncertain"));
   command
-      .add_option("--ranks", request.planned_ranks,
-                  "with --plan: on so many ranks of MPI, of which the memory is that of one")
+      .add_option("--ranks", words.planned_ranks,
+                  "with --plan: number of MPI ranks that share the solve; the memory is that of one rank")
       ->needs(command.get_option("--plan"))
       ->excludes(command.get_option("--accuracy"))
       ->check(CLI::Range(1, 1'000'000));
 }
 
-/// Files that are written.
-void add_file_options(CLI::App& command, SolveRequest& request) {
+void add_file_options(CLI::App& command, SolveWords& words) {
   command.add_option(
-      "--fields", request.fields,
+      "--fields", words.files.fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
-      "last step, or each to a file of its own where the name holds {step}");
+      "last step, or each step to its own file where the name holds {step}");
   command
-      .add_option("--checkpoint", request.checkpoint,
-                  "of a history: keep where it stands in this file (HDF5), after its first step and then as "
-                  "often as that costs 1 % of the time")
+      .add_option("--checkpoint", words.checkpoint.file,
+                  "write checkpoints of a load history to this HDF5 file, after the first step and then as "
+                  "often as takes 1 % of the time")
       ->excludes(command.get_option("--accuracy"));
   command
-      .add_flag("--resume", request.resume,
-                "go on from the file that --checkpoint names, where it is there; the result is that of a "
-                "history without a break")
+      .add_flag("--resume", words.checkpoint.resume,
+                "continue from the --checkpoint file if it exists; the result is the same as without a break")
       ->needs(command.get_option("--checkpoint"));
-  command.add_option("--figure", request.figure,
+  command.add_option("--figure", words.files.figure,
                      "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
+}
+
+void require_file_formats(const AnswerFiles& files) {
+  if (!files.fields.empty()) solver::require_field_format(files.fields);
+  if (!files.figure.empty()) require_figure_format(files.figure);
+  if (has_step(files.figure)) {
+    throw InputError(
+        "--figure " + files.figure,
+        "allowed: a name without {step}: the figure shows the last step (--fields takes {step})");
+  }
+}
+
+/// Throws InputError where a file of the scene would be overwritten.
+void require_scene_kept(const CLI::App& command, const std::string& fields, const Scene& scene) {
+  const std::vector<std::filesystem::path> inputs = input_files(scene);
+  require_inputs_kept(command, inputs);
+  if (!has_step(fields)) return;
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
+  for (std::size_t step = 1; step <= steps; ++step) {
+    require_input_kept("--fields", file_of_step(fields, step), inputs);
+  }
+}
+
+/// Throws InputError for options that several ranks cannot share.
+void require_shared_by_ranks(const SolveWords& words, const Scene& scene) {
+  if (words.accuracy) {
+    throw InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
+  }
+  if (scene.solver.rounding_seed != 0) {
+    throw InputError("solver.rounding_seed", "not on several ranks; allowed: 0");
+  }
+  if (scene.solver.op != solver::OperatorKind::dcfft) {
+    throw InputError("solver.operator", "not on several ranks; allowed there: \"dcfft\"");
+  }
+}
+
+/// Throws InputError where the scene's program may not run, and for options that no other program takes.
+void require_for_programs(const SolveWords& words, const Scene& scene) {
+  require_allowed(scene, {words.allow_programs, words.source.overrides});
+  const char* const option = words.accuracy                                     ? "--accuracy"
+                             : words.plan                                       ? "--plan"
+                             : !words.checkpoint.file.empty()                   ? "--checkpoint"
+                             : words.ranks.several()                            ? "several ranks"
+                             : scene.solver.model == solver::ModelChoice::exact ? "solver.model = \"exact\""
+                                                                                : nullptr;
+  if (option == nullptr) return;
+  throw InputError(option, "cannot be combined with solver.program; allowed: without it");
+}
+
+/// Throws InputError for keys that --accuracy chooses.
+void require_not_set(const std::vector<std::string>& overrides) {
+  for (const std::string& assignment : overrides) {
+    for (const std::string_view key : {"grid.cells", "solver.tolerance"}) {
+      if (!assignment.starts_with(key)) continue;
+      throw InputError(fmt::format("--set {}", assignment),
+                       "cannot be combined with --accuracy, which chooses the cells and the tolerance");
+    }
+  }
+}
+
+AccuracyTarget target_of(const SolveWords& words) {
+  AccuracyTarget target{.error = *words.accuracy};
+  for (const auto& [word, of] : accuracy_words()) {
+    if (word == words.accuracy_of) target.of = of;
+  }
+  return target;
+}
+
+/// The exact model is taken where it answers, unless the user chooses a model.
+SolveRequest accurate_request(const SolveWords& words, Scene scene) {
+  const AccuracyTarget target = target_of(words);
+  require_not_set(words.source.overrides);
+  const bool chosen = solver::SceneReader(words.source.file, words.source.overrides).has("solver.model");
+  if (!chosen && answers_exactly(scene, target.of)) scene.solver.model = solver::ModelChoice::exact;
+  require_reachable(scene, target);
+  if (words.plan) return PlanAccuracy{std::move(scene), target};
+  if (scene.solver.model == solver::ModelChoice::exact) {
+    return AnswerExactlyTo{{std::move(scene), words.files}, target};
+  }
+  return SolveToAccuracy{std::move(scene), target, words.files};
+}
+
+/// Chooses the way to solve by the options and the scene. Throws InputError for invalid combinations.
+SolveRequest request_of(const CLI::App& command, SolveWords words) {
+  if (!words.keep.empty()) return ServeRuns{words.keep, words.source.memory_limit};
+  require_file_formats(words.files);
+  if (!words.model.empty()) {
+    words.source.overrides.push_back(fmt::format("solver.model=\"{}\"", words.model));
+  }
+  const Scene scene = words.source.read();
+  if (!scene.solver.program.empty()) require_for_programs(words, scene);
+  if (words.ranks.several()) require_shared_by_ranks(words, scene);
+  require_scene_kept(command, words.files.fields, scene);
+  require_output("--fields", words.files.fields);
+  require_output("--checkpoint", words.checkpoint.file);
+  if (words.accuracy) return accurate_request(words, scene);
+  if (words.plan) return PlanSolve{scene, words.planned_ranks};
+  const std::vector<UncertainInput> uncertain = uncertain_inputs(words.source, words.uncertain);
+  const auto with_uncertainty = [&](auto solve) -> SolveRequest {
+    if (uncertain.empty()) return solve;
+    return SolveWithUncertainty{std::move(solve), words.source, uncertain};
+  };
+  if (scene.solver.model == solver::ModelChoice::exact) {
+    return with_uncertainty(AnswerExactly{scene, words.files, words.ranks});
+  }
+  std::optional<CheckpointFile> checkpoint;
+  if (!words.checkpoint.file.empty()) checkpoint = words.checkpoint;
+  return with_uncertainty(SolveOnGrid{words.source, scene, words.files, checkpoint, words.ranks});
+}
+
+int run_solve(const CLI::App& command, const SolveWords& words, std::ostream& text, Json& result) {
+  return std::visit([&](const auto& way) { return way.run(text, result); }, request_of(command, words));
 }
 
 }  // namespace
 
 RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
-  const auto request = std::make_shared<SolveRequest>();
-  request->processes = ranks;
+  const auto words = std::make_shared<SolveWords>();
+  words->ranks = ranks;
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
-  command->add_option("scene", request->scene, "scene file (TOML)")->required();
-  add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
-  add_program_options(*command, request->overrides, request->allow_programs);
-  add_accuracy_options(*command, *request);
-  add_file_options(*command, *request);
-  add_memory_option(*command, request->memory_limit);
+  command->add_option("scene", words->source.file, "scene file (TOML)")->required();
+  add_set_option(*command, words->source.overrides,
+                 "override a key of the scene, e.g. load.moment_ratio=0.5");
+  add_program_options(*command, words->source.overrides, words->allow_programs);
+  add_accuracy_options(*command, *words);
+  add_file_options(*command, *words);
+  add_memory_option(*command, words->source.memory_limit);
   constexpr const char* kHidden = "";
-  command->add_option("--keep", request->keep, "folder that keeps the results of runs from standard input")
+  command->add_option("--keep", words->keep, "folder that keeps the results of runs from standard input")
       ->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
       "result.json --fields fields.h5 --figure figure.svg\n"
       "  slipstick solve convergence/scenes/cone.toml --model exact\n"
       "  slipstick solve convergence/scenes/ellipse.toml --accuracy 1e-3\n"
-      "Exit code 0: converged; 1: not, or the accuracy not reached, result written all the same; 2: bad "
-      "input, or gross slip asked for, or --model exact where no exact answer is known.");
-  return running(command, request, run_solve);
+      "Exit code 0: converged; 1: not converged, or accuracy not reached; the result is written; 2: bad "
+      "input, "
+      "a load beyond gross slip, or --model exact where no exact answer is known.");
+  return running(command, words, run_solve);
 }
 
 }  // namespace slipstick::convergence

@@ -3,17 +3,18 @@
 #include <filesystem>
 #include <string>
 
-/// What the operating system has beside the C++ library, here and in run_program.hpp. linux/ has it from the
-/// kernel; portable/ does without, in builds with SLIPSTICK_PORTABLE.
+/// Services of the operating system that the C++ library lacks, here and in run_program.hpp. linux/ uses the
+/// kernel; portable/, for builds with SLIPSTICK_PORTABLE, uses only the C++ library.
 namespace slipstick::convergence {
 
-/// The program that this process runs, on Linux whatever becomes of its file meanwhile; empty: nobody says.
+/// Path of the running executable, empty if unknown. On Linux the path works even after its file was replaced
+/// or removed.
 std::filesystem::path own_program();
 
-/// Its file; empty likewise.
+/// The file of the executable as it was named when it started, empty if unknown.
 std::filesystem::path own_program_file();
 
-/// "unknown" where nobody says.
+/// Model name of the processor; "unknown" if the system has none.
 std::string processor_name();
 
 /// Whether this build starts other programs.

@@ -1,5 +1,5 @@
-# The harness tests itself: each mutant is the program with one source file changed, compiled anew and linked before the
-# library that holds the original. Built by their test alone.
+# Tests of the gates: each mutant is the program with one source file changed and linked before the library of the
+# original. Only the test `mutants` builds them.
 include(${CMAKE_CURRENT_LIST_DIR}/mutants.cmake)
 
 foreach(name IN LISTS mutants)

@@ -1,5 +1,4 @@
-"""Holds a program at a known place: where it puts a finished file in its place. What is to happen there happens then,
-however slow or busy the machine is."""
+"""Stops a program when it renames a finished file, so that a test can act at a known moment on a slow machine too."""
 
 import os
 import subprocess
@@ -23,7 +22,7 @@ static void hold(void) {
   while (access(getenv("HOLD_FLAG"), F_OK) == 0) usleep(1000);
 }
 
-/* Every process of the program counts on in one file. */
+/* All processes of the program count in one file. */
 static int is_the_one(const char* file) {
   if (fnmatch(getenv("HOLD_FILES"), file, 0) != 0) return 0;
   const int count = open(getenv("HOLD_COUNT"), O_WRONLY | O_CREAT | O_APPEND, 0600);
@@ -51,8 +50,8 @@ int remove(const char* file) {
 
 
 class Hold:
-    """A program started with this environment waits before it puts its file of such a name and number, counted from 1, in
-    place, or just after; in whichever of its processes."""
+    """A program with this environment waits before, or just after, it renames to the file of this pattern and number,
+    counted from 1 over all its processes."""
 
     def __init__(self, folder, files, number, after=False):
         self.flag = folder / "held"
@@ -67,7 +66,7 @@ class Hold:
             "HOLD_DRAFT": str(folder / "held.draft")} | ({"HOLD_AFTER": "1"} if after else {})
 
     def process(self, program):
-        """Waits until it is held; its number. `program`: what was started."""
+        """Waits until a process of the program is held; returns its id."""
         end = time.monotonic() + PATIENCE
         while not self.flag.exists():
             assert program.poll() is None, "it ended, and was never held"

@@ -1,4 +1,4 @@
-# Installs into a temporary folder, builds a program against what was installed, and runs both.
+# Installs into a temporary folder, builds a program against the installation, and runs both.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -8,7 +8,7 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-# The consumer is the program of docs/guides/use-from-cpp.md.
+# The consumer is the example of docs/guides/use-from-cpp.md.
 file(READ ${CMAKE_CURRENT_LIST_DIR}/../../docs/guides/use-from-cpp.md page)
 string(REGEX MATCH "```cpp\n([^`]*)```" snippet "${page}")
 file(WRITE ${WORK_DIR}/source/consumer.cpp "${CMAKE_MATCH_1}")
@@ -26,7 +26,7 @@ foreach(file share/man/man1/slipstick.1 share/bash-completion/completions/slipst
     message(FATAL_ERROR "${file} is not installed")
   endif()
 endforeach()
-if(INTERFACES)  # the C interface, as pkg-config finds it: docs/guides/c-interface.md has the program
+if(INTERFACES)  # the C interface by pkg-config, with the example of docs/guides/c-interface.md
   file(READ ${CMAKE_CURRENT_LIST_DIR}/../../docs/guides/c-interface.md page)
   string(REGEX MATCH "```c\n([^`]*)```" snippet "${page}")
   file(WRITE ${WORK_DIR}/source/law.c "${CMAKE_MATCH_1}")
@@ -42,7 +42,7 @@ set(scene ${WORK_DIR}/prefix/share/slipstick/convergence/scenes/paper.toml)
 run(${WORK_DIR}/consumer/consumer)
 set(solve ${WORK_DIR}/prefix/bin/slipstick solve ${scene} --set "grid.cells=[32,32]" --fields ${WORK_DIR}/fields.h5)
 run(${solve})
-# Without the library that it loads for such a file, the program says so.
+# Without the HDF5 library, which is loaded when needed, the error names it.
 file(GLOB_RECURSE library ${WORK_DIR}/prefix/libslipstick_hdf5.so)
 file(REMOVE ${library})
 execute_process(COMMAND ${solve} RESULT_VARIABLE status ERROR_VARIABLE error)

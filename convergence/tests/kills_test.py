@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Kills studies and reports at random moments, starts them again, and asks: is any process or half a file left, is
-anything solved twice, is the result another? It stands here since it goes through runs, studies and the report."""
+"""Kills studies and reports at random moments and starts them again. Checks that no process and no incomplete file is
+left, no solve is repeated and the result is the same."""
 
 import argparse
 import json
@@ -16,8 +16,8 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 MARKER = "SLIPSTICK_TEST_MARKER"
-TIMES = ("seconds", "provenance", "peak_bytes")  # what may differ from run to run
-PATIENCE = 120  # seconds, longer than a killed process takes to go on any machine
+TIMES = ("seconds", "provenance", "peak_bytes")  # may differ from run to run
+PATIENCE = 120  # seconds; a killed process ends sooner on any machine
 SCENE = Path(__file__).parents[1] / "scenes" / "paper.toml"
 
 
@@ -28,11 +28,11 @@ def without_times(tree):
 
 
 def read_whole(path):
-    """Reads a file to its end as what its name says it is; raises where it is not whole."""
+    """Reads a file by the format of its ending; raises if it is incomplete."""
     if path.suffix == ".json":
         return json.loads(path.read_text(encoding="utf-8"))
     if path.suffix == ".h5":
-        import h5py  # a report alone has such files
+        import h5py  # only a report writes HDF5
 
         with h5py.File(path) as file:
             return {name: file[name][:].tobytes() for name in file}
@@ -52,7 +52,7 @@ def is_draft(path):
 
 
 class Command:
-    """A command and the one folder that it writes to."""
+    """A command and its output folder."""
 
     def __init__(self, words, folder, results):
         self.words, self.folder, self.results = words, folder, results
@@ -63,13 +63,13 @@ class Command:
         return subprocess.Popen(self.words, env=environment, stdout=self.log, stderr=self.log, start_new_session=True)
 
     def processes(self):
-        """The command's processes; those that have ended show nothing."""
+        """The running processes of the command; /proc shows no environment of an ended one."""
         found, mark = [], f"{MARKER}={self.folder}".encode() + b"\0"
         for entry in Path("/proc").iterdir():
             try:
                 if entry.name.isdigit() and mark in (entry / "environ").read_bytes():
                     found.append(int(entry.name))
-            except OSError:  # it went, or is somebody else's
+            except OSError:  # it has ended, or belongs to another user
                 pass
         return found
 
@@ -83,12 +83,12 @@ class Command:
             try:
                 if not is_draft(path):
                     read_whole(path)
-            except Exception as error:  # of whichever reader
+            except Exception as error:  # any error of a reader
                 bad.append(f"{path}: {error!r}")
         return bad
 
     def finished(self):
-        """Kept results, and when and where each was written."""
+        """Kept results, with the time and the inode of each file."""
         return {path: (path.stat().st_mtime_ns, path.stat().st_ino) for path in self.folder.rglob("points/*.json")}
 
     def answer(self):
@@ -116,7 +116,7 @@ def report(program, folder):
 
 
 def kill_children(command, parent, choose):
-    """Kills one of the others, if there is one before the parent ends."""
+    """Kills one child process, if there is one before the parent ends."""
     while parent.poll() is None:
         others = [process for process in command.processes() if process != parent.pid]
         if others:
@@ -198,10 +198,10 @@ def try_kind(command, kind, kills, random_numbers, tally):
             complain(kind, line)
         tally.add(broken=len(bad))
         if kind == "report" and done < kills and random_numbers.random() < 0.6:
-            continue  # what goes on is killed again
+            continue  # the restarted command is killed again
         before = command.finished()
         if command.start().wait() != 0:
-            complain(kind, "does not go on:", Path(command.log.name).read_text())
+            complain(kind, "does not resume:", Path(command.log.name).read_text())
             tally.add(differing=1)
         after = command.finished()
         again = [path for path in before if after.get(path) != before[path]]
@@ -219,8 +219,8 @@ def main():
     parser.add_argument("program", type=Path)
     parser.add_argument("--kills", type=int, default=6)
     parser.add_argument("--kinds", nargs="+", default=["study", "worker", "group"],
-                        choices=["study", "worker", "group", "report"], help="what is killed, in equal parts")
-    parser.add_argument("--seed", type=int, default=1, help="of the moments")
+                        choices=["study", "worker", "group", "report"], help="kinds of kills, in equal parts")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random moments")
     arguments = parser.parse_args()
     if not Path("/proc/self/environ").exists():
         print("skipped: only Linux kills a process with its parent and shows the parent of each")

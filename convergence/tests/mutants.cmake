@@ -1,8 +1,8 @@
-# Mistakes that such programs are known to make, one substitution each, and the gates that must fail for them. What is
-# replaced must stand in the file exactly once.
+# Typical mistakes of contact programs, one substitution each, and the gates that must fail for them. FIND must occur in
+# the file exactly once.
 include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/mutant.cmake")
 
-# A convolution whose transforms are as long as the grid: offsets beyond half of it come round from the other side.
+# A convolution whose transforms are as long as the grid: offsets beyond half of it wrap around.
 mutant(no_zero_padding
   FILE solver/elasticity/convolution.cpp
   FIND [[std::vector<double>& quadrant = quadrants[slot];]]
@@ -19,7 +19,7 @@ mutant(no_zero_padding
     }]]
   GATES full-64-twist full-64-contact-radius)
 
-# The cross kernel, odd in both coordinates, taken to be even.
+# The cross kernel is odd in both coordinates; here it is even.
 mutant(k12_even
   FILE solver/elasticity/convolution.cpp
   FIND [[bool is_imaginary(Component component) {]]
@@ -28,21 +28,21 @@ mutant(k12_even
 bool is_imaginary(Component component) {]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
-# The cross kernel's sign, where symmetry leaves a quadrant and one traction field.
+# The cross kernel has the wrong sign on a quadrant with one traction field.
 mutant(k12_sign_in_a_quadrant
   FILE solver/elasticity/mirrored_convolution.cpp
   FIND [[P::load(k11 + at + line) * P::load(plain + at + line) +]]
   REPLACE [[P::load(k11 + at + line) * P::load(plain + at + line) -]]
   GATES hertz-64-traction-l1)
 
-# A shear in place of a rotation, Eqs. (8), (9) as printed.
+# Shear instead of rotation: Eqs. (8), (9) as printed.
 mutant(rotation_as_printed
   FILE solver/grid/packing.cpp
   FIND [[place, n) = x2.segment]]
   REPLACE [[place, n) = -x2.segment]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
-# Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).
+# Slip keeps the direction that the traction had when the cell began to slip: Eqs. (22), (23).
 mutant(frozen_slip_directions
   FILE solver/step/tractions.cpp
   FIND [[if (scene.method == Method::coulomb) {]]
@@ -68,7 +68,7 @@ mutant(equation_1_as_printed
   REPLACE [[return pi / 2 * profile.stick_traction(c, r, inward);]]
   GATES full-64-traction-averaged-l2)
 
-# Hertz's pressure at the corners of cells in place of their centres: the order of convergence falls.
+# Hertz's pressure at the corners of cells instead of their centres: the order of convergence falls.
 mutant(pressure_at_corners
   FILE solver/scene/hertz_pressure.cpp
   FIND [[((cell_x1(grid) / contact.semi_axis_1).square() + (cell_x2(grid) / contact.semi_axis_2).square());]]
@@ -76,14 +76,14 @@ mutant(pressure_at_corners
              ((cell_x2(grid) + 0.5 * grid.h2) / contact.semi_axis_2).square());]]
   GATES hertz-64-traction-l1 hertz-order-traction-l1 hertz-order-traction-l1-verdict)
 
-# Unloading that repeats first loading not quite twice as large.
+# Masing's rule with a factor of 1.999 instead of 2.
 mutant(masing_less_than_twice
   FILE analytic/cycle.cpp
   FIND [[.weight = std::copysign(2, change)]]
   REPLACE [[.weight = std::copysign(1.999, change)]]
   GATES fretting_torsion-128-unloaded-twist)
 
-# The energy that a step's slip loses, against the pressure before the step.
+# The dissipated energy uses the friction bound of the previous step.
 mutant(dissipated_against_the_old_pressure
   FILE solver/step/describe_step.cpp
   FIND [[const ArrayXd& bound = loads.problem.friction_bound;]]
@@ -92,7 +92,7 @@ mutant(dissipated_against_the_old_pressure
   kept = loads.problem.friction_bound;]]
   GATES growing_load-128-released-dissipated)
 
-# An exact twist that is off by far less than any mesh shows.
+# The exact twist is off by less than the error of any mesh.
 mutant(exact_twist_off_by_1e_9
   FILE analytic/torsion.cpp
   FIND [[return twist_integral / (2 * profile.load());]]

@@ -1,9 +1,8 @@
 # cmake -D BUILD_DIR=... -D MUTANTS=<folder> -D PROGRAM=... -D GATES=<file> -D WORK_DIR=... -P mutants_test.cmake: builds
-# the mutants and runs on each the gates that are named for it, which must fail; all of them must pass on the program
-# itself.
+# the mutants and runs their gates. Each gate must fail on its mutant and pass on the program.
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/mutants.cmake")
-set(SECONDS_A_MUTANT 1200)  # then it hangs; a wrong problem may take its solver long
+set(SECONDS_A_MUTANT 1200)  # limit; a solver may converge slowly on a wrong problem
 
 execute_process(COMMAND ${CMAKE_COMMAND} --build "${BUILD_DIR}" --target slipstick_mutants
   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)

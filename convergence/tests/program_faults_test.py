@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""program_faults_test.py PROGRAM: what commands do where they cannot write: all of them in one place, since main writes
-for all."""
+"""program_faults_test.py PROGRAM: how commands end if they cannot write, or find no memory or processes. main() writes
+for all commands, so all are tested here."""
 
 import json
 import os
@@ -57,8 +57,8 @@ class ProgramFaults(ProgramTest):
                    '[[family.vary]]\nkey = "grid.cells"\nvalues = [[12, 12]]\n')
 
     def ends(self, words, code, prepare=None):
-        """What it complains of; what it prints goes to the file out, unless `prepare`, which is called in its process,
-        does otherwise."""
+        """Returns standard error after a check of the exit code. Standard output goes to the file out unless `prepare`,
+        called in the child process, redirects it."""
         with open("out", "wb") as out:
             end = subprocess.run([PROGRAM, *words], stdout=out, stderr=subprocess.PIPE, preexec_fn=prepare)
         complaint = end.stderr.decode()
@@ -66,7 +66,7 @@ class ProgramFaults(ProgramTest):
         return complaint
 
     def commands(self):
-        """Commands that have a result, with little to solve and what they solve kept."""
+        """Commands with a result; their solves are small and kept."""
         self.ends((*SMALL, "--quiet", "--fields", "fields.csv"), 0)
         return (("exact", "--moment-ratio", "0.5"), SMALL, ("solve", PAPER, "--model", "exact"),
                 ("check", PAPER, "fields.csv"), ("study", "study.toml", "--output", "points"),
@@ -78,7 +78,7 @@ class ProgramFaults(ProgramTest):
         os.remove("result.json")
 
     def test_a_standard_output_that_takes_nothing_is_exit_code_2(self):
-        """A result that went nowhere is no success. That in a file is there all the same."""
+        """If standard output cannot be written the command fails, but a result file is written."""
         full = opened_as(1, "/dev/full")
         for command in self.commands():
             for fault in (full, lambda: os.close(1)):
@@ -90,8 +90,8 @@ class ProgramFaults(ProgramTest):
         self.ends(("--help",), 2, full)
 
     def test_closed_streams_are_no_files_of_others(self):
-        """Files and pipes that get their numbers are not taken for them: HDF5 is written and read,
-        and studies have processes."""
+        """With closed standard streams, their descriptor numbers are not used for files and pipes: HDF5 is written and
+        read, and studies start processes."""
         self.ends((*SMALL, "--quiet", "--fields", "whole.h5"), 0)
         check = ("check", PAPER, "whole.h5")
         others = ((*SMALL, "--fields", "fields.h5"), ("study", "study.toml", "--output", "others"))
@@ -115,20 +115,20 @@ class ProgramFaults(ProgramTest):
                           self.ends(command, 2, nobody_reads_and_no_signal))
 
     def test_a_full_standard_error_costs_nothing(self):
-        """A progress line without a reader is no reason to stop."""
+        """A command continues if its progress line cannot be written."""
         for command in self.commands():
             self.ends(command, 0, opened_as(2, "/dev/full"))
             self.assertGreater(Path("out").stat().st_size, 20)
 
     def test_a_full_disk_is_said_and_leaves_no_part(self):
-        """The message names the file, says why and what to do. The old file stays, or none."""
+        """The message names the file, the cause and the remedy. An old file is unchanged."""
         commands = self.commands()
         cases = [((*command, "--json", "x.json"), "x.json") for command in commands]
         cases += [((*SMALL, "--fields", name), name) for name in ("x.csv", "x.h5", "x.vti")]
         cases += [((*commands[5], "--junit", "x.xml"), "x.xml"), ((*commands[5], "--summary", "x.md"), "x.md")]
         for words, name in cases:
             file = Path(name)
-            self.ends((*words, "--quiet"), 0)  # what is solved is kept
+            self.ends((*words, "--quiet"), 0)  # its solves are kept
             for old in ("old", None):
                 file.unlink() if old is None else file.write_text(old)
                 complaint = self.ends((*words, "--quiet"), 2, limit_files(100))
@@ -162,14 +162,14 @@ class ProgramFaults(ProgramTest):
             self.assertEqual(Path("out").read_text(), "")
 
     def test_threads_that_cannot_start_are_said(self):
-        """And those that have started end, so that the program does."""
+        """The threads that did start end, and so does the program."""
         for limit in (limit_memory, limit_processes):
             with self.subTest(limit.__name__):
                 try:
                     runs = subprocess.run([PROGRAM, "--version"], preexec_fn=limit, capture_output=True).returncode == 0
                 except PermissionError:
                     runs = False
-                if not runs:  # a sanitizer takes more memory; the user `nobody` may not read this folder
+                if not runs:  # a sanitizer needs more memory; uid 65534 may not read this folder
                     self.skipTest("the program does not run under this limit")
                 self.ends((*SMALL, "--set", "solver.threads=1"), 0, limit)
                 complaint = self.ends((*SMALL, "--set", "solver.threads=64"), 2, limit)

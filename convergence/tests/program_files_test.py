@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_files_test.py PROGRAM: what commands do to files: none that is read is overwritten, and any name will do."""
+"""program_files_test.py PROGRAM: commands overwrite none of their input files, and file names may have any bytes."""
 
 import json
 import os
@@ -16,7 +16,7 @@ IN_TOML = "-a b\\n'c\\\" $x `y` <z>&{} \u00ff"
 
 class ProgramFiles(ProgramTest):
     def kept(self, input_file, option, *words):
-        """A command that would write to what it reads leaves it as it is."""
+        """A command that would overwrite its input is refused and the file is unchanged."""
         content = Path(input_file).read_bytes()
         self.assertTrue(content)
         self.run_program(*words, code=2, says=(" ".join(option), "would overwrite", "allowed: another file"))

@@ -1,4 +1,4 @@
-"""What tests of the program share: it is run as users do, in a folder of its own."""
+"""Base of the tests that run the program, each in a temporary folder."""
 
 import json
 import os
@@ -41,7 +41,8 @@ class ProgramTest(unittest.TestCase):
         os.chdir(self.folder)
 
     def run_program(self, *words, code=0, says=()):
-        """What it prints, after a check of its exit code (`code`, or one of them) and of parts of what it prints (`says`)."""
+        """Runs the program and returns its output. Checks the exit code (`code`, one or several) and that the output has
+        the texts `says`."""
         end = subprocess.run([PROGRAM, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         text = end.stdout.decode(errors="replace")
         self.assertIn(end.returncode, code if isinstance(code, tuple) else (code,), (words, text))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_test.py PROGRAM: the program as users run it: what goes out, where, and with which exit code."""
+"""program_test.py PROGRAM: output, files and exit codes of the commands."""
 
 import json
 import math
@@ -51,7 +51,7 @@ class Program(ProgramTest):
         scenes = sorted(SCENES.glob("*.toml"))
         self.assertGreaterEqual(len(scenes), 16)
         for scene in scenes:
-            # A height map's grid is that of its samples.
+            # The samples of a height map fix its grid.
             self.run_program("solve", str(scene), *(() if scene.stem == "honed_surface" else SMALL))
 
     def test_gross_slip_is_refused_with_its_limit(self):
@@ -68,7 +68,7 @@ class Program(ProgramTest):
             words = solve("paper", "--set", f"load.twist={twist}")
             result = self.result(*words)
             self.assertEqual("load_warning" in result, warned)
-            if warned:  # it says which twist that would be in rad
+            if warned:  # the warning has the twist in rad
                 self.assertIn(f"{meant['twist_angle']:.4g}"[:-1], result["load_warning"])
                 self.run_program(*words, says=("warning", "in rad"))
 
@@ -88,7 +88,7 @@ class Program(ProgramTest):
 
     def test_result_is_not_lost_when_fields_or_figure_cannot_be_written(self):
         for option, name in (("--fields", "full.csv"), ("--figure", "full.svg")):
-            os.symlink("/dev/full", name)  # shows while writing, after the solve
+            os.symlink("/dev/full", name)  # writing fails only after the solve
             says = (name,) if option == "--fields" else ("moment", "the result is complete, but")
             self.run_program(*solve("paper", option, name, "--json", "kept.json"), code=2, says=says)
             self.assertEqual(json.loads(Path("kept.json").read_text())["status"], "converged")
@@ -200,7 +200,7 @@ class Program(ProgramTest):
         self.assertAlmostEqual(second["twist_angle"] / first["twist_angle"], 1, delta=1e-12)
 
     def test_files_without_an_end_are_exit_code_2(self):
-        """Whatever reads a file: none is waited for, and none is read for ever."""
+        """No command waits for a pipe or reads an endless file."""
         self.write("map.toml", '[upper]\nshape = "height_map"\nfile = "/dev/zero"\nspacing = [1e-5, 1e-5]\n'
                    'young_modulus = 1e11\npoisson_ratio = 0.3\n[lower]\nrigid = true\n[contact]\nfriction = 0.1\n'
                    '[load]\nnormal = 1.0\nmoment_ratio = 0.5\n')
@@ -231,7 +231,7 @@ class Program(ProgramTest):
         self.assertTrue(bad.startswith("bad: the twist is"), bad)
 
     def test_check_asks_for_more_where_it_is_told(self):
-        """The exact answer, sampled, is right within its mesh; it solves no grid's own problem."""
+        """The exact answer at cell centres is within the mesh's error; it is no solution of the grid's problem."""
         scene = (str(SCENES / "paper.toml"), "--set", "grid.cells=[48,48]")
         self.run_program("solve", *scene, "--set", "solver.model=exact", "--fields", "sampled.csv")
         for code, *options in ((0,), (0, "--strict"), (1, "--discrete"), (0, "--tolerance", "0.02"),

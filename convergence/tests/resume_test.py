@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""resume_test.py PROGRAM: a history that is killed, between steps or in one, goes on from its checkpoint to the result
-that it would have had; a checkpoint that is not its own is refused."""
+"""resume_test.py PROGRAM: a history killed between steps or in a step resumes from its checkpoint and ends with the
+digits of an uninterrupted one; a checkpoint of another scene or program is refused."""
 
 import json
 import os
@@ -38,7 +38,7 @@ class ResumeTest(unittest.TestCase):
         return end.stderr
 
     def kill(self, words, between):
-        """Kills the solve when it has written its next checkpoint, or at the end of the step behind it."""
+        """Kills the solve after it has written its next checkpoint, or at the end of the next step."""
         hold = Hold(self.aside, "*history.h5" if between else "*step*.h5", 1 if between else 2, between)
         child = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                  env=hold.environment)
@@ -53,8 +53,8 @@ class ResumeTest(unittest.TestCase):
         for path in self.folder.iterdir():
             path.unlink()
 
-    def assert_goes_on(self, scene, *options):
-        """Killed between two steps, and at the end of one."""
+    def assert_resumes(self, scene, *options):
+        """Kills between two steps, and at the end of a step."""
         self.run_program(scene, *options)
         whole = self.answer()
         words = (scene, *options, "--checkpoint", self.checkpoint, "--resume")
@@ -64,34 +64,34 @@ class ResumeTest(unittest.TestCase):
                 self.kill(self.words(*words), between)
             said = self.run_program(*words)
             self.assertEqual(self.answer(), whole)
-            self.assertRegex(said, r"goes on after step \d+, from ")
+            self.assertRegex(said, r"after step \d+, from .*history\.h5")
             self.assertEqual(list(self.folder.glob("*.part*")), [])
 
     def test_growing_load(self):
-        self.assert_goes_on("growing_load", "--set", "grid.cells=[48,48]")
+        self.assert_resumes("growing_load", "--set", "grid.cells=[48,48]")
 
     def test_full_coupling(self):
-        self.assert_goes_on("spence_sphere", "--set", "grid.cells=[32,32]")
+        self.assert_resumes("spence_sphere", "--set", "grid.cells=[32,32]")
 
-    def test_slip_that_goes_on_from_step_to_step(self):
-        self.assert_goes_on("torsion_loop", "--set", "grid.cells=[16,16]")
+    def test_slip_over_several_steps(self):
+        self.assert_resumes("torsion_loop", "--set", "grid.cells=[16,16]")
 
-    def test_what_is_not_its_checkpoint_is_refused(self):
+    def test_other_and_damaged_checkpoints_are_refused(self):
         small = ("growing_load", "--set", "grid.cells=[16,16]")
         keep = ("--checkpoint", self.checkpoint)
         self.run_program(*small, *keep)
         good = self.checkpoint.read_bytes()
-        self.assertIn("is there already; allowed: --resume", self.run_program(*small, *keep, code=2))
+        self.assertIn("allowed: --resume", self.run_program(*small, *keep, code=2))
         resume = (*keep, "--resume")
         other = "is the checkpoint of another scene, or of this one with other keys"
         self.assertIn(other, self.run_program(*small, "--set", "contact.friction=0.2", *resume, code=2))
         self.assertIn(other, self.run_program("fretting_torsion", *resume, code=2))
         program = shutil.copy(PROGRAM, self.folder / "other")
-        (self.folder / "lib").symlink_to(PROGRAM.parent / "lib")  # of HDF5, which is looked for there
+        (self.folder / "lib").symlink_to(PROGRAM.parent / "lib")  # the HDF5 library is searched there
         with open(program, "ab") as file:
             file.write(b"x")
         self.assertIn("another build of slipstick", self.run_program(*small, *resume, program=program, code=2))
-        for place in range(2048, len(good), len(good) // 3):  # wherever values or text lie: refused, or not read
+        for place in range(2048, len(good), len(good) // 3):  # a damaged byte is detected, or lies outside the data
             self.checkpoint.write_bytes(good[:place] + bytes([good[place] ^ 0x10]) + good[place + 1:])
             end = subprocess.run(self.words(*small, *resume), cwd=self.folder, capture_output=True, text=True)
             self.assertIn(end.returncode, (0, 2), end.stderr)
@@ -114,7 +114,7 @@ class ResumeTest(unittest.TestCase):
         self.assertIn("would overwrite", self.run_program(*small, "--checkpoint", SCENES / "growing_load.toml", code=2))
         self.assertIn("cannot be written", self.run_program(*small, "--checkpoint", "no/where.h5", code=2))
         drawn = ("--set", "solver.rounding_seed=1", "--checkpoint", "a.h5")
-        self.assertIn("left out beside --checkpoint", self.run_program(*small, *drawn, code=2))
+        self.assertIn("solver.rounding_seed = 1", self.run_program(*small, *drawn, code=2))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@
 #include "solver/input/tests/scratch_folder.hpp"
 #include "solver/scene/scene.hpp"
 
-/// What tests of convergence/ share.
+/// Helpers of the tests of convergence/.
 namespace slipstick::convergence {
 
 /// A scene of convergence/scenes/.

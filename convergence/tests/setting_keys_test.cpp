@@ -1,4 +1,4 @@
-// Every key in the tables of studies, gates and hard cases is one that their readers ask for.
+// The readers of studies, gates and hard cases read every key of their tables.
 
 #include <gmock/gmock.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A file that has every key.
+/// A file with every key.
 constexpr const char* kWholeStudy = R"(
 name = "all"
 scene = "scene.toml"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""shards_test.py PROGRAM GUIDE: parts of a study's or of gates' runs, solved apart and joined, give what one command
-gives; what is missing, killed or misspelt is said. The guide's one-liners are run from its text, where their programs
+"""shards_test.py PROGRAM GUIDE: shards of a study or of gates, solved separately and merged, give the result of one
+command; missing, killed and misspelt shards are reported. The guide's commands are run from its text if their programs
 are installed."""
 
 import json
@@ -18,7 +18,7 @@ from hold import Hold
 from kills_test import SCENE, without_times
 
 PROGRAM, GUIDE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-PATIENCE = 120  # seconds, longer than anything here takes on any machine
+PATIENCE = 120  # seconds; everything here is faster on any machine
 STUDY = f"""
 name = "small"
 scene = "{SCENE}"
@@ -29,7 +29,7 @@ tolerances = [1e-2, 1e-4]
 key = "contact.pressure"
 values = ["solved", "hertz"]
 """
-# The first fails: what is the largest part of its error is found when all is joined.
+# The first gate fails: the largest part of its error is found after all shards are merged.
 GATES = f"""
 [[gate]]
 id = "tight"
@@ -74,7 +74,7 @@ class ShardsTest(unittest.TestCase):
         return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder).glob("*.json")}
 
     def solve_shards(self, command, file, count):
-        """Their folders; and no run is solved by two of them."""
+        """The folders of the shards; no run is solved twice."""
         folders, seen = [], set()
         for i in range(1, count + 1):
             folders.append(f"{command}-{count}-{i}")
@@ -116,7 +116,7 @@ class ShardsTest(unittest.TestCase):
         self.assertIn(gone, self.kept("joined"))
 
     def copy_of_the_program_goes_on(self, folders):
-        """As on another machine: its file is as good as the original, whenever it was written."""
+        """A copied folder counts as the original, with any file times, as from another machine."""
         copied = shutil.copy(PROGRAM, self.folder / "copied")
         os.utime(copied, (1, 1))
         words = [copied, "study", "study.toml", "--output", "whole", "--merge", *folders]
@@ -153,7 +153,7 @@ class ShardsTest(unittest.TestCase):
 
 
 class OneLinersTest(unittest.TestCase):
-    """As they stand in the guide, on a study that takes a second."""
+    """The commands of the guide, on a study that takes a second."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="slipstick-engines-"))
@@ -165,7 +165,7 @@ class OneLinersTest(unittest.TestCase):
         self.text = GUIDE.read_text()
 
     def block(self, first_words):
-        """The fenced block that holds these words."""
+        """The fenced block of the guide that has these words."""
         for block in re.findall(r"^```\w*\n(.*?)^```", self.text, re.S | re.M):
             if first_words in block:
                 return block
@@ -195,7 +195,7 @@ class OneLinersTest(unittest.TestCase):
         self.assert_judged(self.shell(self.block("snakemake ")))
 
     def test_slurm(self):
-        """Its syntax, by Slurm where that is installed; and what a task of the array does."""
+        """Checks the syntax, by Slurm if it is installed, and runs the tasks of the array."""
         script = self.folder / "shards.sh"
         script.write_text(self.block("#SBATCH"))
         subprocess.run(["bash", "-n", script], check=True)

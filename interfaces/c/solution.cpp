@@ -165,9 +165,10 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
     scene.solver.model = solver::ModelChoice::exact;
   convergence::require_reachable(scene, target);
   if (scene.solver.model == solver::ModelChoice::exact) {
-    const Json account = convergence::exact_accuracy(scene, target);
+    const convergence::Accuracy account = convergence::exact_accuracy(scene, target);
     answer_exactly(kept, scene);
-    kept.result["accuracy"] = account;
+    kept.result["accuracy"] = to_json(account);
+    kept.text += accuracy_text(account);
     return {};
   }
   const auto cache = std::make_shared<solver::SolveCache>();
@@ -176,8 +177,10 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
         return find_on_grid(chosen, request, cache, detail);
       });
   keep(kept, answer.answer);
-  kept.result["accuracy"] = answer.accuracy;
-  return answer.reached ? std::string() : convergence::accuracy_text(kept.result);
+  kept.result["accuracy"] = to_json(answer.accuracy);
+  const std::string account = accuracy_text(answer.accuracy);
+  kept.text += account;
+  return answer.reached() ? std::string() : account;
 }
 
 int solve(const Request& request, slipstick_solution& kept) {
@@ -189,7 +192,6 @@ int solve(const Request& request, slipstick_solution& kept) {
   const PlansOfOneRounding plans{scene.solver.rounding_seed != 0};
   const std::string why =
       accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
-  if (accurate) kept.text += convergence::accuracy_text(kept.result);
   // Names of files need not be UTF-8; JSON is.
   kept.json = kept.result.dump(2, ' ', false, Json::error_handler_t::replace);
   if (why.empty() && kept.result.at("status") == "converged") return SLIPSTICK_OK;

@@ -1,12 +1,13 @@
-// How --accuracy chooses, what it reaches, and that it says so: on made data and in solves.
+// Choices of --accuracy and the accuracy that they reach, on artificial data and in solves.
 
 #include "convergence/solve/accuracy.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "convergence/oracle/errors.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/reached.hpp"
@@ -18,7 +19,6 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 /// Errors 1/cells^order.
@@ -57,8 +57,8 @@ TEST(AccuracyData, TellTheWorkBetweenMeshesAndTolerances) {
   EXPECT_NEAR(work_of(data, 20.0, 0.5), 400.0, 1e-9);
 }
 
-/// Those that come with the program, so that a mesh can be picked by them; and the file that holds them,
-/// which is what would be written of them.
+/// The data of the program are monotonic, as the choice of a mesh needs, and their file is in the written
+/// format.
 TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
   const AccuracyData data = accuracy_data();
   ASSERT_GE(data.meshes.size(), 3U);
@@ -81,7 +81,7 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
   EXPECT_EQ(accuracy_toml(data, written), file);
 }
 
-/// Those that come with the program, in every scene that may ask for them.
+/// By the data of the program.
 TEST(AccuracyChoice, TakesNoFewerCellsForASmallerError) {
   for (const char* name : {"paper", "ellipse", "unequal_patches", "off_centre"}) {
     const solver::Scene at = example(name);
@@ -100,7 +100,7 @@ TEST(AccuracyChoice, TakesNoFewerCellsForASmallerError) {
   }
 }
 
-/// The scene's own model on the chosen cells has as many across its contact as were asked for.
+/// The scene's model on the chosen cells has the requested number of cells across its contact.
 TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
   for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
            {}, {"grid.extent=[3e-3,3e-3]"}, {"grid.extent=[1.2e-3,2e-3]"}}) {
@@ -115,8 +115,8 @@ TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
   }
 }
 
-// An extent that is given stays, so that twice the cells are twice as many across. Without one a few stay
-// free whatever their number.
+// With a given extent, cells across the contact are proportional to the cells. Without one, a fixed number of
+// cells is outside the contact.
 TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
   const ContactOnGrid given = contact_on_grid(example("paper", {"grid.extent=[1.2e-3,2e-3]"}));
   EXPECT_NEAR(cells_across(given, 256) / cells_across(given, 64), 4.0, 1e-12);
@@ -124,7 +124,7 @@ TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
   EXPECT_GT(cells_across(free, 256) / cells_across(free, 64), 4.0 * (1.0 + 2.0 / 64.0));
 }
 
-// What the length of steps leaves is no part of what the mesh may leave.
+// The mesh is chosen for the target less the error by the length of the steps.
 TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
   const solver::Scene at = example("paper");
   const ContactOnGrid contact = contact_on_grid(at);
@@ -136,7 +136,7 @@ TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
   }
 }
 
-// The grid stands in a file.
+// A file fixes the grid.
 TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
   solver::Scene at = example("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
   at.contact.pressure = solver::PressureModel::file;
@@ -145,19 +145,19 @@ TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
   EXPECT_DOUBLE_EQ(cells_across(contact, 24), contact.cells_across);
 }
 
-// As a solve refuses it: else a mesh would be chosen for a part of the contact.
+// A solve refuses such a contact too; a mesh would be chosen for a part of it.
 TEST(AccuracyChoice, IsRefusedWhereTheContactGoesOnBeyondTheExtent) {
   const solver::Scene cut = example("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
   EXPECT_THROW(contact_on_grid(cut), solver::InputError);
   EXPECT_NO_THROW(contact_on_grid(example("patches")));
 }
 
-/// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.
+/// The sphere without its exact answer: the estimate is above the error, by less than a factor.
 TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
   const solver::Scene at = example("paper", {"grid.cells=[64,64]"});
   const solver::Solution solution = solver::solve(at);
   const Errors errors = compare(solution, *find_oracle(at).oracle);
-  const auto estimate = [&](AccuracyOf of) { return reached_error(at, solution, Json::object(), of); };
+  const auto estimate = [&](AccuracyOf of) { return reached_error(at, solution, ErrorsRecord{}, of); };
   EXPECT_EQ(estimate(AccuracyOf::twist).how, "estimated");
   EXPECT_GE(estimate(AccuracyOf::twist).error, std::abs(errors.twist));
   EXPECT_LE(estimate(AccuracyOf::twist).error, 30.0 * std::abs(errors.twist));
@@ -165,62 +165,63 @@ TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
   EXPECT_LE(estimate(AccuracyOf::traction).error, 5.0 * errors.traction.at_centres.l2);
 }
 
-/// Under a flat punch tractions err more than smooth contacts do on any mesh, and the estimate says so.
+/// The error of tractions under a flat punch is larger than that of smooth contacts, and the estimate covers
+/// it.
 TEST(Accuracy, IsEstimatedFromTheDifferenceWhereContactsAreNotSmooth) {
   const solver::Scene at = example("flat_punch", {"grid.cells=[64,64]"});
   const solver::Solution solution = solver::solve(at);
   const Errors errors = compare(solution, *find_oracle(at).oracle);
-  const double estimate = reached_error(at, solution, Json::object(), AccuracyOf::traction).error;
+  const double estimate = reached_error(at, solution, ErrorsRecord{}, AccuracyOf::traction).error;
   EXPECT_GE(estimate, errors.traction.averaged.l2);
   EXPECT_LE(estimate, 5.0 * errors.traction.averaged.l2);
 }
 
-/// A twist that one mesh and another estimate: its tractions are no roots at the edge.
+/// A scene whose error is estimated from two meshes: its tractions are singular at the edge.
 solver::Scene punch() { return example("flat_punch"); }
 
-/// Solves whose errors are made.
+/// An answer with the error constant/cells^order.
 SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
   SolvedScene answer;
   answer.solution.status = solver::Status::converged;
   const auto cells = static_cast<double>(at.grid.cells[0]);
-  answer.result = {{"cells", at.grid.cells}, {"twist_error", -constant * std::pow(cells, -order)}};
+  answer.record.problem.cells = at.grid.cells;
+  answer.record.end.errors.twist = {-constant * std::pow(cells, -order)};
   return answer;
 }
 
-/// What an accuracy of a punch comes to whose errors are made.
-AccurateAnswer made_accuracy(double wanted, double constant, double order) {
-  return solve_to_accuracy(punch(), {wanted}, [=](const solver::Scene& at, solver::Detail) {
+AccurateAnswer made_accuracy(double error, double constant, double order) {
+  return solve_to_accuracy(punch(), {error}, [=](const solver::Scene& at, solver::Detail) {
     return made_answer(at, constant, order);
   });
 }
 
 TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
   const auto found = made_accuracy(1e-3, 100.0, 2.0);
-  EXPECT_TRUE(found.reached);
-  EXPECT_GE(found.accuracy["attempts"].size(), 2U);
-  EXPECT_LE(found.accuracy["reached"].get<double>(), 1e-3);
-  const Json& attempts = found.accuracy["attempts"];
+  EXPECT_TRUE(found.reached());
+  const std::vector<AttemptAccount>& attempts = found.accuracy.grid->attempts;
+  EXPECT_GE(attempts.size(), 2U);
+  EXPECT_LE(found.accuracy.error(), 1e-3);
   for (std::size_t i = 1; i < attempts.size(); ++i) {
-    EXPECT_GT(attempts[i]["cells"][0], attempts[i - 1]["cells"][0]);
-    EXPECT_LT(attempts[i]["tolerance"], attempts[i - 1]["tolerance"]);
+    EXPECT_GT(attempts[i].cells[0], attempts[i - 1].cells[0]);
+    EXPECT_LT(attempts[i].tolerance, attempts[i - 1].tolerance);
   }
 }
 
 TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
   const auto found = made_accuracy(1e-2, 0.02, 0.0);
-  EXPECT_FALSE(found.reached);
-  EXPECT_EQ(found.accuracy["attempts"].size(), 4U);
-  EXPECT_DOUBLE_EQ(found.accuracy["reached"], 0.02);
+  EXPECT_FALSE(found.reached());
+  EXPECT_EQ(found.accuracy.grid->attempts.size(), 4U);
+  EXPECT_DOUBLE_EQ(found.accuracy.error(), 0.02);
 }
 
 TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
   const auto found = made_accuracy(1e-2, 0.99, 0.0);
-  EXPECT_FALSE(found.reached);
-  EXPECT_LE(found.accuracy["attempts"].size(), 4U);
-  EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), kMaxCellsAcross + 8.0);
+  EXPECT_FALSE(found.reached());
+  EXPECT_LE(found.accuracy.grid->attempts.size(), 4U);
+  EXPECT_LE(found.accuracy.grid->attempts.back().cells[0], kMaxCellsAcross + 8.0);
   const auto at_once = made_accuracy(1e-5, 0.99, 0.0);
-  EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
-  EXPECT_THAT(at_once.accuracy["not_reached"].get<std::string>(), HasSubstr("finer than 2048"));
+  EXPECT_FALSE(at_once.reached());
+  EXPECT_EQ(at_once.accuracy.grid->attempts.size(), 1U);
 }
 
 TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
@@ -231,9 +232,9 @@ TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
     answer.solution.status = solver::Status::not_converged;
     return answer;
   });
-  EXPECT_FALSE(found.reached);
+  EXPECT_FALSE(found.reached());
   EXPECT_EQ(solves, 1);
-  EXPECT_TRUE(found.accuracy["reached"].is_null());
+  EXPECT_TRUE(std::isnan(found.accuracy.error()));
 }
 
 }  // namespace

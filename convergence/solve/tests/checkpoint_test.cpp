@@ -1,4 +1,4 @@
-// What a checkpoint keeps, and that it is refused when a bit of it has changed.
+// A checkpoint returns the state that was written, and is refused if a bit has changed.
 
 #include "convergence/solve/checkpoint.hpp"
 
@@ -36,7 +36,7 @@ TEST_F(CheckpointFile, KeepsEachSafeguardsCount) {
   EXPECT_EQ(kept.breakdown, "the first");
 }
 
-// The last bit of one value of any field.
+// Changes the last bit of one value of any field.
 TEST_F(CheckpointFile, IsRefusedWithAnotherBit) {
   const std::string whole = solver::read_input_file(file_, 1 << 20, "a checkpoint");
   for (const double value : {3.0, 7.0, 15.0}) {

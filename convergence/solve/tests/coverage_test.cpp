@@ -1,4 +1,4 @@
-// Whether the uncertainty of a mean over shifted grids holds, on random scenes whose exact answers are known.
+// The uncertainty of a mean over shifted grids covers its error on random scenes with exact answers.
 
 #include <fmt/core.h>
 
@@ -14,8 +14,8 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Spheres, cones, punches with round corners and powers of the radius; half of them on extents that are
-/// given, so that edges lie anywhere in their cells.
+/// Spheres, cones, punches with round corners and powers of the radius; half of them on random
+/// extents, so that edges are anywhere in their cells.
 class RandomScenes {
  public:
   solver::Scene next() {
@@ -42,7 +42,7 @@ class RandomScenes {
     }
     return scene;
   }
-  double wanted() { return std::pow(10.0, uniform(-3.3, -2.0)); }
+  double target() { return std::pow(10.0, uniform(-3.3, -2.0)); }
 
  private:
   static std::string set(const std::string& key, double value) {
@@ -59,7 +59,7 @@ class RandomScenes {
   std::mt19937 random_{1};
 };
 
-/// With SLIPSTICK_TEST_ALL set ten times as many, as each night.
+/// SLIPSTICK_TEST_ALL, set each night, makes it ten times as many.
 TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
   const int scenes = std::getenv("SLIPSTICK_TEST_ALL") != nullptr ? 200 : 20;
   RandomScenes random;
@@ -67,19 +67,19 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
   std::string missed;
   for (int i = 0; i < scenes; ++i) {
     const solver::Scene scene = random.next();
-    const double wanted = random.wanted();
+    const double target = random.target();
     const AccurateAnswer found = solve_to_accuracy(
-        scene, {wanted},
+        scene, {target},
         [](const solver::Scene& at, solver::Detail detail) { return solve_scene(at, {.detail = detail}); });
-    ASSERT_TRUE(found.reached) << i << ": " << found.accuracy["not_reached"];
-    const auto error = found.accuracy["reached"].get<double>();
-    const auto uncertainty = found.accuracy["uncertainty"].get<double>();
-    ASSERT_EQ(found.accuracy["how"], "exact");
+    ASSERT_TRUE(found.reached()) << i << ": " << *found.accuracy.grid->not_reached;
+    const double error = found.accuracy.error();
+    const double uncertainty = found.accuracy.grid->uncertainty.value();
+    ASSERT_EQ(found.accuracy.reached.how, "exact");
     if (error <= uncertainty) {
       ++held;
     } else {
-      missed += fmt::format("{}: {} of the limit, {:.2g} wanted, error {:.2g} > {:.2g}\n", i,
-                            *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion), wanted,
+      missed += fmt::format("{}: {} of the limit, target {:.2g}, error {:.2g} > {:.2g}\n", i,
+                            *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion), target,
                             error, uncertainty);
     }
   }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""memory_test.py PROGRAM: what a solve will take is known before it is taken. The doubles a cell by which it is
-predicted stand in solver/elasticity/elasticity.cpp and solver/model/memory_plan.cpp; memory_test.py PROGRAM --measure prints those of
-processes beside them."""
+"""memory_test.py PROGRAM: the predicted memory of a solve against the memory that it used. The constants of the
+prediction, in doubles a cell, are in solver/elasticity/elasticity.cpp and solver/model/memory_plan.cpp;
+memory_test.py PROGRAM --measure prints measured ones."""
 
 import itertools
 import subprocess
@@ -12,11 +12,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from program_run import PROGRAM, SCENES, ProgramTest, main
 
-# Sanitizers take memory of their own.
+# Sanitizers use extra memory.
 SANITIZED = any(name in Path(PROGRAM).read_bytes() for name in (b"__asan_init", b"__tsan_init"))
-MOST = 1.3  # the prediction over what is taken
+MOST = 1.3  # largest ratio of the prediction to the memory used
 FULL = "solver.model=full"
-# By scene and settings: how much of the grid is solved, the method, what a history and turns keep.
+# Scenes that solve different parts of the grid, with other methods, histories and full coupling.
 CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=hertz"),
          ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=projected_gradient"),
          ("paper", 160, FULL, "solver.method=projected_gradient"), ("paper", 288, FULL, "solver.threads=4"),
@@ -26,7 +26,7 @@ CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=
          ("paper", 48, FULL, "solver.operator=direct"), ("ellipse", 288), ("turned_ellipse", 288),
          ("torsion_and_force", 160), ("torsion_and_force", 288), ("fretting_torsion", 288), ("dissimilar", 288),
          ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 160)]
-# Contacts that fill a part of their grid that is not known before they are solved.
+# Contacts whose size is known only after the solve.
 SPARSE = [("rough_sphere", 512, FULL), ("rough_sphere", 512, FULL, "contact.friction=0", "load.moment_ratio=0")]
 
 
@@ -37,7 +37,7 @@ def words(scene, cells, *settings):
 
 class Memory(ProgramTest):
     def taken(self, *case):
-        """With the library for HDF5, which is loaded when a file asks for it: a prediction counts it."""
+        """Includes the HDF5 library, which is loaded only for such a file and which the prediction counts."""
         result = self.result("solve", *words(*case), "--fields", "fields.h5")
         return result["predicted_bytes"], result["peak_bytes"]
 
@@ -79,7 +79,7 @@ class Memory(ProgramTest):
 
     @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
     def test_what_is_refused_is_not_taken(self):
-        # One field of this grid takes 7 GB; what may be taken at all is a tenth of that.
+        # One field of this grid takes 7 GB; the limit is a tenth of that.
         end = subprocess.run(["sh", "-c", 'ulimit -v 700000; exec "$@"', "sh", PROGRAM, "solve", *words("paper", 30000),
                               "--memory-limit", "1GiB"], capture_output=True, text=True)
         self.assertEqual(end.returncode, 2, end.stderr)

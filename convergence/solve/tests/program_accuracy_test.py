@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_accuracy_test.py PROGRAM: what `slipstick solve --accuracy` reaches and says, and what --plan predicts."""
+"""program_accuracy_test.py PROGRAM: errors reached by `slipstick solve --accuracy` and predictions of --plan."""
 
 import itertools
 import json
@@ -32,7 +32,7 @@ class Accuracy(Solve):
             self.assertLessEqual(abs(result["twist_error"]), wanted)
             self.assertEqual((accuracy["reached"], accuracy["how"], accuracy["wanted"]),
                              (abs(result["twist_error"]), "exact", wanted))
-            self.assertLessEqual(len(accuracy["attempts"]), 2)  # such loads are those that meshes are chosen by
+            self.assertLessEqual(len(accuracy["attempts"]), 2)  # the data for choosing a mesh are of such loads
             self.assertEqual(accuracy["attempts"][-1]["cells"], result["cells"])
 
     def test_shifted_grids_reach_five_digits_of_the_papers_twist_on_small_grids(self):
@@ -43,7 +43,7 @@ class Accuracy(Solve):
             self.assertEqual(result["cell_traction"], "smooth")
             self.assertEqual(len(result["accuracy"]["attempts"][0]["grids"]), GRIDS)
             self.assertLessEqual(result["accuracy"]["uncertainty"], 1e-5)
-        self.text("ellipse", "--accuracy 1e-3", says=["uncertainty", f"of the {GRIDS} grids whose mean it is"])
+        self.text("ellipse", "--accuracy 1e-3", says=["uncertainty", f"scatter of {GRIDS} grids"])
 
     def test_of_tractions_and_stick_radius_is_reached(self):
         traction = self.solved("paper", "--model auto --accuracy 1e-2 --accuracy-of traction")
@@ -66,11 +66,11 @@ class Accuracy(Solve):
         result = self.solved("paper", "--accuracy 1e-9")
         self.assertEqual(result["method"], "exact")
         self.assertLessEqual(result["accuracy"]["reached"], 1e-9)
-        # Unless the user says that it be on a grid.
+        # The user may choose a grid.
         self.assertEqual(self.solved("paper", "--accuracy 1e-2 --set solver.model=full")["method"], "coulomb")
 
     def test_is_estimated_on_an_ellipse(self):
-        # No exact twist is known: the estimate holds against a mesh and a path that are three times as fine.
+        # No exact twist is known: the estimate covers the difference to three times the cells and parts of steps.
         for wanted in ("1e-2", "1e-3"):
             result = self.solved("ellipse", f"--accuracy {wanted}")
             accuracy = result["accuracy"]
@@ -85,16 +85,16 @@ class Accuracy(Solve):
                 *(("paper", f"--accuracy {error}", "above 0 and below 1") for error in ("0", "-1e-3", "nan", "2", "inf")),
                 ("paper", "--accuracy 1e-16"), ("paper", "--accuracy 1e-9 --model auto", "allowed on a grid"),
                 ("paper", "--accuracy 1e-3 --set grid.cells=[64,64]", "--set grid.cells=[64,64]"),
-                ("paper", "--accuracy 1e-3 --set solver.tolerance=1e-6", "left out beside --accuracy"),
+                ("paper", "--accuracy 1e-3 --set solver.tolerance=1e-6", "--set solver.tolerance=1e-6"),
                 ("paper", "--accuracy 1e-3 --model auto --set solver.method=paper", "solver.method"),
                 ("paper", "--accuracy 1e-3 --accuracy-of moment", "moment"),
                 ("mindlin", "--accuracy 1e-3 --model auto", "no torsion"),
                 ("honed_surface", "--accuracy 1e-3", "the grid is that of upper.file"),
-                # A contact of millimetres in a square metre: no mesh that resolves it over all of that has an end.
+                # A contact of millimetres in a square metre: no mesh of reasonable size resolves it.
                 *(("turned_ellipse", f"{words} --set grid.extent=[1,1]", "grid.extent = [1, 1]",
                    "less than one of [64, 64] cells")
                   for words in ("--accuracy 0.1", "--accuracy 0.1 --plan", "--set grid.cells=[64,64]")),
-                # How large the contact of a sum will be is known after a solve alone.
+                # The size of a contact of several shapes is known only after a solve.
                 ("patches", "--accuracy 0.1 --set grid.extent=[1,1]", "grid.extent = [1, 1]",
                  "too few to choose a mesh by")):
             self.text(scene, words, code=2, says=says)
@@ -116,7 +116,7 @@ class Plan(Solve):
         self.assertLessEqual(plan["least_bytes"], result["predicted_bytes"])
         self.assertGreaterEqual(plan["bytes"], result["predicted_bytes"])
         self.assertGreater(plan["seconds"], 0)
-        # Two tractions in each contact cell, an eighth of them: two mirror axes and the diagonal.
+        # Two tractions in each contact cell, over 8 by symmetry: two mirror axes and the diagonal.
         self.assertAlmostEqual(plan["unknowns"], result["contact_cells"] / 4, delta=10)
 
     def test_of_an_accuracy_is_that_of_the_first_attempt(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""program_history_test.py PROGRAM: histories of loads: what goes out, where, and with which exit code."""
+"""program_history_test.py PROGRAM: output, files and exit codes of load histories."""
 
 import itertools
 import json
@@ -25,7 +25,7 @@ CYCLE = turning(out=0.8, back=-0.8, again=0.8)
 
 
 def unexplained(node, path=""):
-    """Paths of nulls without a reason beside them, and of empty reasons."""
+    """Paths of nulls without a reason, and of empty reasons."""
     if isinstance(node, list):
         return [found for i, one in enumerate(node)
                 for found in ([f"{path}[{i}]"] if one is None else unexplained(one, f"{path}[{i}]"))]
@@ -65,7 +65,7 @@ class History(ProgramTest):
             self.assertAlmostEqual(history[key], total, delta=4.5e-16 * total)
         self.assertEqual(history["worst_gap"], max(step["certificate"]["gap"] for step in steps))
         for key in ("twist_angle", "moment", "dissipated", "twist_error", "stick_radius", "limit"):
-            self.assertEqual(result[key], steps[2][key], key)  # the whole is the last step's
+            self.assertEqual(result[key], steps[2][key], key)  # the result has the last step's value
 
     def test_shows_the_size_of_the_force(self):
         line = next(line for line in self.solve(FORCES).splitlines() if line.startswith("  pull "))
@@ -90,7 +90,7 @@ class History(ProgramTest):
         self.assertFalse(Path("r.json").exists())
 
     def test_stops_at_a_step_that_misses_its_tolerance(self):
-        # The first step needs no iterations, the second one more than are allowed.
+        # The first step needs no iterations, the second one more than allowed.
         result = self.solved(turning(rest=0.0, far=0.9, back=0.0), "--set", "solver.max_iterations=3", "--quiet", code=1)
         self.assertEqual(result["status"], "not_converged")
         self.assertEqual([step["status"] for step in result["steps"]], ["converged", "not_converged"])
@@ -109,11 +109,11 @@ class History(ProgramTest):
     def test_overrides_a_load_of_one_step(self):
         steps = self.solved(CYCLE, "--set", "step[1].moment_ratio=-0.3")["steps"]
         for step, ratio in zip(steps, (0.8, -0.3)):
-            self.assertAlmostEqual(step["moment_ratio"], ratio, delta=1e-13)  # loads are met to 1e-14 of the cells'
+            self.assertAlmostEqual(step["moment_ratio"], ratio, delta=1e-13)  # relative error of the cells' sum
         self.solve(CYCLE, "--set", "step[3].moment_ratio=0.1", code=2, says="step[3]")
 
     def test_exact_model_answers_the_last_step(self):
-        # What stays after unloading is, by Masing's rule, the twist of first loading less twice that of half the moment.
+        # By Masing's rule the twist after unloading is that of first loading less twice the twist of half the moment.
         def answer(**ratios):
             return self.solved(turning(**ratios), "--model", "exact")
 
@@ -126,7 +126,7 @@ class History(ProgramTest):
                    says=["step[1].moment = -0.05", "gross slip"])
 
     def test_exact_model_says_what_spence_does_not(self):
-        # The stick ratio alone is known where the shear has its part in the pressure.
+        # Under full coupling only the stick ratio is known.
         rubber = ["--set", "lower.young_modulus=1e9", "--set", "lower.poisson_ratio=0.0", "--set", "contact.friction=0.3"]
         steps = "[[step]]\nnormal = 500.0\n[[step]]\nnormal = 1000.0\n"
         for coupling in ("pressure", "full"):
@@ -143,7 +143,7 @@ class History(ProgramTest):
             Path("f.csv").unlink()
 
     def test_says_how_far_the_limit_is(self):
-        # At 0.8 of the limit moment 1/0.8, about the axis.
+        # At 0.8 of the limit moment the factor is 1/0.8, about the axis.
         for step in self.solved(CYCLE)["steps"]:
             self.assertAlmostEqual(step["limit"]["factor"], 1.25, delta=1e-9)
             for x in step["limit"]["centre"]:

@@ -1,4 +1,4 @@
-// Means over shifted grids: on made answers, and of the paper's sphere.
+// Means over shifted grids, of artificial answers and of the paper's sphere.
 
 #include "convergence/solve/shifted_grids.hpp"
 
@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"
@@ -14,9 +15,9 @@
 namespace slipstick::convergence {
 namespace {
 
-const AccuracyQuantity kTwist{"twist", "twist_error", "twist_angle"};
+const AccuracyQuantity kTwist{"twist", "twist_angle"};
 
-/// A twist of 2 with an error that goes up and down with the place of a front in its cell.
+/// A twist of 2 whose error is a sine of the position of a front in its cell.
 struct Staircase {
   double front;   ///< m, its radius
   double height;  ///< of the error
@@ -30,7 +31,10 @@ struct Staircase {
     const double cells = front * static_cast<double>(at.grid.cells[0]) / (*at.grid.extent)[0];
     phases.push_back(cells - std::floor(cells));
     const double error = height * std::sin(2.0 * M_PI * cells);
-    answer.result = {{"twist_angle", 2.0 * (1.0 + error)}, {"twist_error", error}, {"twist", 1.0 + error}};
+    EndRecord& end = answer.record.end;
+    end.loads.twist_angle = {2.0 * (1.0 + error)};
+    end.loads.twist = {1.0 + error};
+    end.errors.twist = {error};
     return answer;
   }
 };
@@ -49,8 +53,8 @@ TEST(ShiftedGrids, SpreadTheFrontEvenlyOverACell) {
   }
 }
 
-// The answer that is handed on has the mean in it, in both of its forms.
-TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
+// The answer has the mean as twist angle and as dimensionless twist.
+TEST(ShiftedGrids, CancelAStaircaseOfOnePeriod) {
   const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
   const ContactOnGrid contact = contact_on_grid(scene);
   const ShiftedMean mean =
@@ -58,14 +62,15 @@ TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
                               Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
   EXPECT_LE(std::abs(mean.error), 1e-4);
   EXPECT_NEAR(mean.uncertainty, 0.2 * 1e-3 * std::sqrt(0.75), 5e-5);  // of a sine, on three points
-  EXPECT_DOUBLE_EQ(mean.answer.result["twist_angle"].get<double>(), 2.0 * (1.0 + mean.error));
-  EXPECT_DOUBLE_EQ(mean.answer.result["twist"].get<double>(), 1.0 + mean.error);
-  EXPECT_DOUBLE_EQ(mean.answer.result["twist_error"].get<double>(), mean.error);
+  const EndRecord& end = mean.answer.record.end;
+  EXPECT_DOUBLE_EQ(end.loads.twist_angle, 2.0 * (1.0 + mean.error));
+  EXPECT_DOUBLE_EQ(end.loads.twist, 1.0 + mean.error);
+  EXPECT_DOUBLE_EQ(end.errors.twist, mean.error);
   ASSERT_EQ(mean.grids.size(), static_cast<std::size_t>(kShiftedGrids));
-  EXPECT_GT(mean.grids[0]["extent"][0], mean.grids[2]["extent"][0]);  // the finest last
+  EXPECT_GT(mean.grids[0].extent[0], mean.grids[2].extent[0]);  // the finest last
 }
 
-// Grids whose twists are off by -d, d and -d scatter by sqrt(4/3) d about -d/3.
+// Relative errors of -d, d and -d have the standard deviation sqrt(4/3) d about the mean -d/3.
 TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
   const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
   double d = 1e-3;
@@ -73,13 +78,13 @@ TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
                                             [&](const solver::Scene& at, solver::Detail detail) {
                                               auto answer =
                                                   Staircase{.front = 1e-4, .height = 0.0}(at, detail);
-                                              answer.result["twist_angle"] = 2.0 * (1.0 + (d = -d));
+                                              answer.record.end.loads.twist_angle = {2.0 * (1.0 + (d = -d))};
                                               return answer;
                                             });
   EXPECT_NEAR(mean.uncertainty, 0.2e-3 * std::sqrt(4.0 / 3.0) / (1.0 - 1e-3 / 3.0), 1e-12);
 }
 
-// A history's errors add up, and its twists may nearly cancel: its scatter counts in full.
+// Errors add up in a history and its twists may nearly cancel: the whole scatter is uncertainty.
 TEST(ShiftedGrids, OfHistoriesAreNoBetterThanTheirScatter) {
   const solver::Scene scene = example("fretting_torsion", {"grid.cells=[96,96]"});
   const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
@@ -87,11 +92,11 @@ TEST(ShiftedGrids, OfHistoriesAreNoBetterThanTheirScatter) {
   EXPECT_GE(mean.uncertainty, 1e-3 * std::sqrt(0.75) * 0.95);
 }
 
-// What is left out of a grid's answer changes no digit of the rest.
-TEST(ShiftedGrids, AreSolvedAlikeToAnyDetail) {
+// Detail::loads omits numbers and changes no digit of the others.
+TEST(ShiftedGrids, HaveTheSameDigitsInAnyDetail) {
   const solver::Scene scene = example("paper", {"grid.cells=[64,64]", "load.moment_ratio=0.9"});
-  const Json all = solve_scene(scene).result;
-  const Json loads = solve_scene(scene, {.detail = solver::Detail::loads}).result;
+  const Json all = to_json(solve_scene(scene).record);
+  const Json loads = to_json(solve_scene(scene, {.detail = solver::Detail::loads}).record);
   for (const char* const key : {"twist_angle", "twist_error", "moment", "certificate", "resolved"}) {
     EXPECT_EQ(all[key], loads[key]) << key;
   }
@@ -101,7 +106,7 @@ TEST(ShiftedGrids, AreSolvedAlikeToAnyDetail) {
   EXPECT_FALSE(loads["traction_error"].contains("l1") && loads["traction_error"]["l1"].is_number());
 }
 
-// Grids that agree by luck do not know more than grids of such cells do.
+// Grids may agree by chance: the uncertainty is at least that of data on such meshes.
 TEST(ShiftedGrids, AreNoBetterThanSuchMeshesWhereTheyAgree) {
   const auto uncertainty = [](const char* cells) {
     const solver::Scene scene = example("paper", {cells});
@@ -144,14 +149,14 @@ TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   EXPECT_FALSE(gains_by_smooth_cells(example("flat_punch"), AccuracyOf::stick_radius));
 }
 
-// The grids of a slender contact err alike, since its stick area is no small copy of it.
+// All grids of a slender contact have the same error, since stick area and contact differ in shape.
 TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
   const auto solve = [](const solver::Scene& at, solver::Detail detail) {
     return solve_scene(at, {.detail = detail});
   };
   constexpr double kWanted = 5e-3;
   int beyond = 0;
-  // All twelve each night, half of them here; one of them is beyond.
+  // Each night all twelve scenes, else half of them; the error of one exceeds its uncertainty.
   const bool all = std::getenv("SLIPSTICK_TEST_ALL") != nullptr;
   for (const double radius : all ? std::vector{0.002, 0.003, 0.005, 0.01} : std::vector{0.003, 0.01}) {
     for (const double ratio : {0.85, 0.93, 0.97}) {
@@ -160,14 +165,14 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
       scene.surfaces[0].radius_2 = radius;
       scene.grid.cells = {64, 64};
       const AccurateAnswer found = solve_to_accuracy(scene, {kWanted}, solve);
-      ASSERT_TRUE(found.reached) << radius << ", " << ratio;
-      solver::Scene fine = with_cells(scene, 4 * found.answer.result["cells"][0].get<int>());
+      ASSERT_TRUE(found.reached()) << radius << ", " << ratio;
+      solver::Scene fine = with_cells(scene, 4 * found.answer.solution.grid.n1);
       fine.solver.cell_traction = solver::CellTraction::smooth;
-      fine.solver.substeps = found.accuracy["substeps"];
-      const double value = found.answer.result["twist_angle"];
+      fine.solver.substeps = found.accuracy.grid->substeps;
+      const double value = found.answer.record.end.loads.twist_angle;
       const double error = std::abs(value / solver::solve(fine).twist_angle - 1.0);
       EXPECT_LE(error, kWanted);
-      if (error > found.accuracy["uncertainty"].get<double>()) ++beyond;
+      if (error > found.accuracy.grid->uncertainty) ++beyond;
     }
   }
   EXPECT_LE(beyond, 1);

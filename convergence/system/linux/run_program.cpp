@@ -34,17 +34,17 @@ namespace {
 
 /// The exit code of a program that could not be started, as shells have it.
 constexpr int kNotStarted = 127;
-/// Before the number of the parent that a tied program must not outlive.
+/// Words of a command line that starts a program by way of slipstick: kTied, the process id of the parent,
+/// then kStart or kGuard and the words of the other program. kGuard: no descendant may outlive it.
 constexpr std::string_view kTied = "--tied-to";
-/// Before the words of another program.
 constexpr std::string_view kStart = "start";
-/// The same of one that must leave no process behind.
 constexpr std::string_view kGuard = "guard";
-/// Between two looks whether a program has ended that says nothing.
+/// Time between two polls for the end of a program without captured output.
 constexpr std::chrono::milliseconds kLook{5};
 
 #ifdef __linux__
-/// Looks for descendants that are left, kLook apart: one that the kernel holds may outlast a SIGKILL.
+/// Number of searches for remaining descendants, kLook apart: a process inside a kernel call may survive a
+/// SIGKILL for a while.
 constexpr int kMostLooks = 1000;
 
 bool is_child(const std::filesystem::path& process) {
@@ -55,8 +55,8 @@ bool is_child(const std::filesystem::path& process) {
          std::atoi(stat.c_str() + name_ends + 4) == getpid();
 }
 
-/// Kills all that a subreaper started: a process whose parent ends becomes its child, so that in the end all
-/// are.
+/// Kills all descendants. This process is a subreaper: a descendant whose parent ends becomes its child, so
+/// killing children repeatedly reaches all.
 void kill_descendants() {
   for (int look = 0; look < kMostLooks; ++look) {
     pid_t ended = 0;
@@ -72,8 +72,8 @@ void kill_descendants() {
   }
 }
 
-/// Starts a program and ends as it does, or on SIGTERM, which the end of the parent sends too; all that the
-/// program started ends before.
+/// Starts a program and waits for its end, or for SIGTERM, which the kernel also sends when the parent ends.
+/// Then kills all descendants and ends with the program's exit code or signal.
 [[noreturn]] void guard(char** words, pid_t parent) {
   sigset_t awaited;
   sigset_t before;
@@ -240,7 +240,7 @@ bool Program::reap(bool wait) {
   };
   end_.cpu_seconds = seconds(used.ru_utime) + seconds(used.ru_stime);
   if (found < 0) {
-    end_.trouble = "ended, and nobody says how";
+    end_.trouble = "ended, exit status unavailable";
   } else if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted) {
     end_ = not_started(ENOENT);
   } else {
@@ -263,7 +263,7 @@ ProgramEnd Program::wait_at_most(double seconds, std::size_t kept) {
   end_feed();
   const auto start = Clock::now();
   const pid_t group = process_;
-  const auto read_what_is_there = [&](int wait) {
+  const auto read_available = [&](int wait) {
     pollfd ready{output_, POLLIN, 0};
     if (output_ < 0 || poll(&ready, 1, wait) <= 0) return false;
     read_on();
@@ -279,11 +279,11 @@ ProgramEnd Program::wait_at_most(double seconds, std::size_t kept) {
       break;
     }
     if (output_ < 0) std::this_thread::sleep_for(kLook);
-    read_what_is_there(static_cast<int>(kLook.count()));
+    read_available(static_cast<int>(kLook.count()));
   }
-  while (read_what_is_there(0)) {
+  while (read_available(0)) {
   }
-  // What it left behind could hold its output for ever.
+  // Descendants of the program could keep its output open for ever.
   if (own_group_ && !guarded_ && group > 0) kill(-group, SIGKILL);
   close_descriptor(output_);
   return end_;
@@ -293,12 +293,12 @@ ProgramEnd run_program(const std::vector<std::string>& words, const ProgramOptio
   return Program(words, options).wait();
 }
 
-void obey_tie(int& argc, char**& argv) {
+void die_with_parent(int& argc, char**& argv) {
   if (argc < 4 || argv[1] != kTied) return;
 #ifdef __linux__
   if (argv[3] == kGuard) guard(argv + 4, std::atoi(argv[2]));
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != std::atoi(argv[2])) _exit(EXIT_FAILURE);  // it was gone before that
+  if (getppid() != std::atoi(argv[2])) _exit(EXIT_FAILURE);  // the parent ended before prctl()
 #endif
   argv[2] = argv[0];
   argv += 2;

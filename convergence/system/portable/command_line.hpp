@@ -4,7 +4,7 @@
 
 namespace slipstick::convergence {
 
-/// What the command line calls this program; empty before main() has told.
+/// The first word of the command line, set by die_with_parent(); empty before.
 std::filesystem::path& named_program();
 
 }  // namespace slipstick::convergence

@@ -23,7 +23,7 @@ ProgramEnd run_program(const std::vector<std::string>&, const ProgramOptions&) {
   return {.started = false, .output = {}, .trouble = std::string("not started: ") + kNone};
 }
 
-void obey_tie(int& argc, char**& argv) {
+void die_with_parent(int& argc, char**& argv) {
   if (argc > 0) named_program() = argv[0];
 }
 

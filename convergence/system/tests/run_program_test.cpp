@@ -16,10 +16,10 @@ namespace {
 
 using testing::HasSubstr;
 
-/// In the environment of each process that is to be found again, with a value that no other test has.
+/// Environment variable that identifies the processes of one test.
 constexpr const char* kMarker = "SLIPSTICK_TEST_MARKER";
 
-/// The processes that run with the marker at this value; none where the system does not show them.
+/// Running processes whose marker has this value; none on a system without /proc.
 std::vector<pid_t> marked_processes(const std::string& value) {
   std::vector<pid_t> found;
   std::error_code error;
@@ -72,8 +72,8 @@ TEST(RunProgram, GivesBackWhatWasWritten) {
   EXPECT_EQ(much.output.size(), 1000000U);
 }
 
-/// No shell takes arguments apart, and a program that is tied gets them as they are.
-TEST(RunProgram, HandsArgumentsOnAsTheyAre) {
+/// No shell splits or expands arguments, with tied_by neither.
+TEST(RunProgram, PassesArgumentsUnchanged) {
   const std::vector<std::string> words{"printf", "[%s]", "a b", "$HOME", "'", "--json", ""};
   for (const char* const tied_by : {"", SLIPSTICK_PROGRAM}) {
     const auto end = run_program(words, {.captured = Captured::output, .tied_by = tied_by});
@@ -81,14 +81,14 @@ TEST(RunProgram, HandsArgumentsOnAsTheyAre) {
   }
 }
 
-TEST(RunProgram, OneThatIsLeftIsKilled) {
+TEST(RunProgram, TheDestructorKillsARunningProgram) {
   const auto start = std::chrono::steady_clock::now();
   { const Program left({"sleep", "600"}); }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
 
-/// A program that was started goes when who started it is killed.
-TEST(RunProgram, DoesNotOutliveWhoStartedIt) {
+/// A signal that kills the parent ends the program that it started.
+TEST(RunProgram, DoesNotOutliveItsParent) {
 #ifndef __linux__
   GTEST_SKIP() << "only Linux kills a process with its parent";
 #endif
@@ -96,7 +96,7 @@ TEST(RunProgram, DoesNotOutliveWhoStartedIt) {
   for (const int signal : {SIGKILL, SIGTERM, SIGHUP}) {
     const pid_t parent = fork();
     if (parent == 0) {
-      setenv(kMarker, marker.c_str(), 1);  // the program's environment, not what is seen of this process
+      setenv(kMarker, marker.c_str(), 1);  // /proc shows it in children, not in this process
       run_program({"sleep", "600"}, {.tied_by = SLIPSTICK_PROGRAM});
       _exit(0);
     }
@@ -108,8 +108,8 @@ TEST(RunProgram, DoesNotOutliveWhoStartedIt) {
   }
 }
 
-/// Where nobody is told how children end, nothing is said of it.
-TEST(RunProgram, AnEndThatIsNotToldIsNoSuccess) {
+/// With SIGCHLD ignored the kernel keeps no exit status of children.
+TEST(RunProgram, AnUnavailableExitStatusIsNoSuccess) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
   EXPECT_EQ(run_program({"sh", "-c", "exit 0"}).code, -1);
   std::signal(SIGCHLD, before);

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "convergence/results/result_parts.hpp"
+#include "convergence/solve/accuracy.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+
+/// Predicted size and cost of a solve.
+struct SolvePlan {
+  std::optional<std::array<solver::Index, 2>> cells;  ///< none: the exact solution needs no grid
+  double tolerance = 0.0;
+  double unknowns = 0.0;     ///< after symmetry
+  double bytes = 0.0;        ///< of one rank, at most
+  double least_bytes = 0.0;  ///< of one rank, before any cell is known to be in contact
+  int ranks = 1;
+  double sent_bytes = 0.0;  ///< by one rank for each application of the operator
+  double seconds = 0.0;     ///< on one rank of this machine, of all grids; NaN: not measured for this method
+  int grids = 1;            ///< solves whose mean is the answer
+};
+
+/// Throws InputError as make_model(), and as require_oracle() for the exact model.
+SolvePlan plan_solve(const solver::Scene& scene, int ranks = 1);
+
+Json to_json(const SolvePlan& plan);
+/// The same for a person.
+std::string plan_text(const SolvePlan& plan);
+
+}  // namespace slipstick::convergence
