@@ -45,20 +45,20 @@ mutant(rotation_as_printed
 # Slip keeps the direction that the traction had when the cell began to slip: Eqs. (22), (23).
 mutant(frozen_slip_directions
   FILE solver/step/tractions.cpp
-  FIND [[if (scene.method == Method::coulomb) {]]
-  REPLACE [[if (scene.method == Method::coulomb) {
+  FIND [[if (scene.solver.method == Method::coulomb) {]]
+  REPLACE [[if (scene.solver.method == Method::coulomb) {
     return solve_by_paper_method(*elastic.make(part.grid(), tangential_kernel()), problem,
-                                 {.tolerance = scene.tolerance,
-                                  .max_iterations = scene.max_iterations,
+                                 {.tolerance = scene.solver.tolerance,
+                                  .max_iterations = scene.solver.max_iterations,
                                   .progress = progress});
   }
-  if (scene.method == Method::coulomb) {]]
+  if (scene.solver.method == Method::coulomb) {]]
   GATES ellipse-64-slip-direction ellipse-64-gap ellipse-64-twist)
 
 mutant(tolerance_times_ten
   FILE solver/scene/scene.cpp
-  FIND [[scene.tolerance = reader.number_or(]]
-  REPLACE [[scene.tolerance = 10.0 * reader.number_or(]]
+  FIND [[scene.solver.tolerance = reader.number_or(]]
+  REPLACE [[scene.solver.tolerance = 10.0 * reader.number_or(]]
   GATES gradient-64-gap)
 
 # Without the factor 2/pi in the stick area.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <limits>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <shared_mutex>
 #include <utility>
 

@@ -200,21 +200,6 @@ TEST_F(FrictionMap, OfOnesChangesNoDigit) {
   }
 }
 
-TEST_F(FrictionMap, LeavesOpenWhatTheLengthOfItsStepsDoes) {
-  const auto factor = [](Index i, Index j) { return 0.4 + 0.05 * static_cast<double>((7 * i + 3 * j) % 17); };
-  Scene scene = paper_scene(37, 0.6);
-  scene.grid.cells = {37, 31};
-  push_then_twist(scene);
-  scene = with_map(scene, factor, scene.grid.cells);
-  const Solution few = solved_under(scene);
-  scene.solver.substeps = 32;
-  const Solution many = solved_under(scene);
-  const double off = std::abs(few.twist_angle - many.twist_angle);
-  EXPECT_GT(off, 1e-3 * many.twist_angle);
-  EXPECT_GT(few.resolution.path.twist, off);
-  EXPECT_LT(few.resolution.path.twist, 10.0 * off);
-}
-
 TEST_F(FrictionMap, GivesPressureItsAsymmetryUnderFullCoupling) {
   Scene scene = paper_scene(20, 0.5);
   scene.lower.young_modulus = 70e9;

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
+#include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::convergence {
@@ -61,6 +64,28 @@ TEST_F(PathOfLoads, ATwistOfConesOnOneAxisHasNoPath) {
   };
   EXPECT_EQ(path("[0.0, 0.0]"), 0.0);
   EXPECT_GT(path("[2e-4, 0.0]"), 0.0);
+}
+
+TEST(PathOfLoadsOnAFrictionMap, IsStatedBetweenTheTrueErrorAndTenTimesIt) {
+  Scene scene = paper_scene(37, 0.6);
+  scene.grid.cells = {37, 31};
+  scene.contact.friction.map = std::filesystem::path(testing::TempDir()) / "path_of_friction_map.csv";
+  std::ofstream map(scene.contact.friction.map);
+  for (int i = 0; i < 37; ++i) {
+    for (int j = 0; j < 31; ++j) map << (j > 0 ? "," : "") << 0.4 + 0.05 * ((7 * i + 3 * j) % 17);
+    map << '\n';
+  }
+  map.close();
+  scene.steps.assign(2, scene.steps.front());
+  scene.steps[0].torsion = MomentRatio{0.0};
+  scene.steps[0].force = scene.steps[1].force = {40.0, 10.0};
+  const Solution few = solve_with_path(scene);
+  scene.solver.substeps = 32;
+  const Solution many = solve_with_path(scene);
+  const double off = std::abs(few.twist_angle - many.twist_angle);
+  EXPECT_GT(off, 1e-3 * many.twist_angle);
+  EXPECT_GT(few.resolution.path.twist, off);
+  EXPECT_LT(few.resolution.path.twist, 10.0 * off);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ BAD = [
     ('model = "auto"', 'model = "some"', [], 'solver.model = "some"', "auto"),
     ("threads = 2", "threads = -1", [], "solver.threads = -1", "a whole number from 0"),
     ("max_iterations = 70", "max_iterations = 0", [], "solver.max_iterations = 0", "a whole number from 1"),
-    ("radius = 0.018", "radius = 0.018\nrigid = true", [], "upper.rigid = true", "upper.young_modulus left out"),
+    ("radius = 0.018", "radius = 0.018\nrigid = true", [], "upper.rigid = true", "no upper.young_modulus"),
     ("radius = 0.018", "radius = 0.018\nrigid = 1", [], "upper.rigid = 1", "true, false"),
     (SPHERE, 'shape = "cone"\nslope = 0.1', ["contact.pressure=hertz"], "contact.pressure", '"hertz"',
      "solved, file"),
