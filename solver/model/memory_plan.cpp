@@ -30,7 +30,7 @@ constexpr double kFieldsOfPressure = 1.4;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
 constexpr double kFieldsOfOthers = 21.0;
 /// Doubles a cell of the whole grid of the step before.
-constexpr double kFieldsBefore = 25.0;
+constexpr double kFieldsBefore = 20.0;
 /// Doubles a cell of the whole grid where pressure and tractions are solved in turn: Anderson's combination
 /// and guesses. They stand in for much of the step before.
 constexpr double kFieldsOfTurns = 58.0;
