@@ -1,5 +1,5 @@
-"""tidy_tree_test.py SOURCE_DIR: no file is longer than 450 lines and no C++ function than 60; no sentence of a comment or a
-page starts with "Of"; a constant's name has one value at namespace scope throughout the program."""
+"""tidy_tree_test.py SOURCE_DIR: no file is longer than 450 lines and no C++ function than 60; a constant's
+name has one value at namespace scope throughout the program."""
 
 import pathlib
 import re
@@ -12,7 +12,6 @@ CPP = (".cpp", ".hpp", ".h", ".c")
 TEXTS = (*CPP, ".py", ".cmake", ".txt", ".md", ".sh", ".toml", ".j2")
 # A line that opens a scope other than a function, which may contain many functions.
 OTHER_SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum|concept|extern)\b[^()]*$|=\s*$")
-SENTENCE_WITH_OF = re.compile(r"(?:^|[.:;!?)]\s+)Of\s+(?!course)")
 # Tables are not constants.
 CONSTANT = re.compile(r"^(?:inline )?constexpr (?!std::array)[\w:<>, ]+? (k[A-Z]\w*)(?: = ([^;]+)|(\{[^;]+\}));", re.M)
 
@@ -33,19 +32,6 @@ def functions(lines):
         begin = end + 1
 
 
-def comments(suffix, text):
-    """(line, text) of each comment, or paragraph of a page: lines that follow each other are one."""
-    if suffix in (".md", ".j2"):
-        pattern = r"(?:^(?!    )[^\n]*\S[^\n]*\n?)+"
-    elif suffix in CPP:
-        pattern = r"(?:(?://[/!]?<?)[^\n]*(?:\n[ \t]*(?=//))?)+"
-    else:
-        pattern = r'"""(?:[^"]|"(?!""))*"""|(?:#[^\n]*(?:\n[ \t]*(?=#))?)+'
-    for found in re.finditer(pattern, text, re.M):
-        bare = re.sub(r"\s*\n\s*(?://[/!]?<?|#)?\s*|^(?://[/!]?<?|#|\"\"\")\s*", " ", found.group(0))
-        yield text.count("\n", 0, found.start()) + 1, bare.strip()
-
-
 def violations(root):
     values = {}
     files = [file for folder in FOLDERS for file in (root / folder).rglob("*")] + list(root.glob("*"))
@@ -53,9 +39,6 @@ def violations(root):
         name, text = file.relative_to(root).as_posix(), file.read_text(errors="replace")
         if file.suffix in (*CPP, ".py") and text.count("\n") > MAX_FILE_LINES:
             yield f"{name}:1: {text.count(chr(10))} lines, allowed: {MAX_FILE_LINES}"
-        for line, comment in comments(file.suffix, text):
-            if SENTENCE_WITH_OF.search(comment):
-                yield f"{name}:{line}: a sentence starts with Of: {comment[:90]}"
         for line, length in functions(text.splitlines()) if file.suffix in CPP else ():
             if length > MAX_FUNCTION_LINES:
                 yield f"{name}:{line}: a function of {length} lines, allowed: {MAX_FUNCTION_LINES}"
