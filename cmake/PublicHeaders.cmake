@@ -11,7 +11,7 @@ set(SLIPSTICK_PUBLIC_HEADERS
   solver/contact/limit_load.hpp   # largest loads of a contact
   solver/grid/grid.hpp            # cells, and the layout of fields
   solver/grid/ranks.hpp           # the processes that share a grid: one by default
-  solver/newton/progress.hpp      # an iteration's callback, counts of its safeguards
+  solver/newton/safeguards.hpp      # an iteration's callback, counts of its safeguards
   solver/elasticity/operator_kind.hpp
   solver/input/field_file.hpp     # fields as CSV, HDF5, VTK
   solver/input/input_error.hpp    # the exception for bad input

@@ -8,7 +8,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/grid/grid.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {

@@ -5,7 +5,7 @@
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/grid/ranks.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 

@@ -112,7 +112,7 @@ DAMAGES = [
         ('id = "a"\n', "", "gate[0].id"),
         ('quantity = "twist_error"\n', "", "gate[0].quantity"),
         ("below = 1.0\n", "", "below, above, both, equals, of and within, or published"),
-        ("below = 1.0", "below = 1.0\nequals = 3", "one or the other"),
+        ("below = 1.0", "below = 1.0\nequals = 3", "equals"),
         ("below = 1.0", "below = 1.0\nabove = 1.0", "less than below"),
         ('basis = "b"\n', "", "gate[0].basis", "active gate"),
         ('"b"', "''", "gate[0].basis"),

@@ -50,7 +50,7 @@ Json to_json(const CostPoint& point) {
   return json;
 }
 
-Json to_json(const ProgramAnswer& row) {
+Json to_json(const PageProgram& row) {
   Json json{{"name", row.name},       {"cells", row.cells},     {"status", row.status},
             {"version", row.version}, {"message", row.message}, {"number", row.number}};
   set(json, "seconds", row.seconds);

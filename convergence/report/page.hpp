@@ -60,7 +60,7 @@ struct Cost {
 };
 
 /// An answer of this program or of another one on one mesh.
-struct ProgramAnswer {
+struct PageProgram {
   std::string name = {};
   solver::Index cells = 0;
   std::string status = {};
@@ -96,7 +96,7 @@ struct SceneCosts {
   std::string scene = {};
   std::vector<PageNumber> numbers = {};
   Cost cost = {};
-  std::optional<std::vector<ProgramAnswer>> programs = {};
+  std::optional<std::vector<PageProgram>> programs = {};
   OperatorTimes operators = {};
 };
 Json to_json(const SceneCosts& costs);
@@ -155,7 +155,7 @@ struct Page {
   std::vector<PageNumber> numbers = {};
   std::optional<Json> uncertainty = {};
   std::optional<Cost> cost = {};
-  std::optional<std::vector<ProgramAnswer>> programs = {};
+  std::optional<std::vector<PageProgram>> programs = {};
   std::optional<OperatorTimes> operators = {};
   std::optional<Json> hard = {};
   std::optional<Json> digits = {};

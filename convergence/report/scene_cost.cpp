@@ -86,7 +86,7 @@ std::vector<Json> run_or_refuse(const std::vector<RunSpec>& runs, const ProcessP
 std::string word(const Json& result, const char* key) { return result.value(key, ""); }
 
 /// The error of an answer of another program, by the first number that it has.
-void compare(ProgramAnswer& row, const Json& result, const std::vector<std::string>& numbers,
+void compare(PageProgram& row, const Json& result, const std::vector<std::string>& numbers,
              const std::vector<PageNumber>& known) {
   for (const std::string& number : numbers) {
     const PageNumber* const reference = find_row(known, number);
@@ -149,13 +149,13 @@ Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const s
   return cost;
 }
 
-std::vector<ProgramAnswer> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
-                                               const std::vector<Index>& meshes, const Contest& contest,
-                                               const ProcessPool& pool) {
+std::vector<PageProgram> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
+                                             const std::vector<Index>& meshes, const Contest& contest,
+                                             const ProcessPool& pool) {
   std::vector<BesideMethod> all{{"slipstick", kNoProgram}};
   all.insert(all.end(), contest.programs.begin(), contest.programs.end());
   std::vector<RunSpec> runs;
-  std::vector<ProgramAnswer> rows;
+  std::vector<PageProgram> rows;
   for (const BesideMethod& each : all) {
     for (const Index cells : meshes) {
       runs.push_back(changed(base, {each.override, cells_override(scene, cells)}));
@@ -165,7 +165,7 @@ std::vector<ProgramAnswer> answers_of_programs(const RunSpec& base, const solver
   const std::vector<Json> results = run_or_refuse(runs, pool);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& result = results[i];
-    ProgramAnswer& row = rows[i];
+    PageProgram& row = rows[i];
     const auto program = result.find("program");
     const bool foreign = program != result.end();
     row.status = word(result, "status");
@@ -253,7 +253,7 @@ std::string costs_text(const SceneCosts& costs) {
                         point.tolerance, shown_number(point.error, ""), shown_number(point.seconds, " s"),
                         status.empty() ? "" : "  " + status);
   }
-  for (const ProgramAnswer& row : costs.programs.value_or(std::vector<ProgramAnswer>{})) {
+  for (const PageProgram& row : costs.programs.value_or(std::vector<PageProgram>{})) {
     text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "",
                         shown_number(row.error, ""), shown_number(row.seconds, " s"), row.number,
                         status_unless_converged(row.status));

@@ -26,9 +26,9 @@ struct Contest {
 };
 
 /// The answers of this program and of others on some meshes.
-std::vector<ProgramAnswer> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
-                                               const std::vector<solver::Index>& meshes,
-                                               const Contest& contest, const ProcessPool& pool);
+std::vector<PageProgram> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
+                                             const std::vector<solver::Index>& meshes, const Contest& contest,
+                                             const ProcessPool& pool);
 
 /// Whole solves with direct sums and with convolution on small meshes of the scene.
 OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "solver/grid/grid.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/scene.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/elasticity/elasticity.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
 

@@ -6,7 +6,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/elasticity/elasticity.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
 

@@ -9,7 +9,7 @@
 #include "solver/contact/normal_contact.hpp"
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "solver/newton/newton_state.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/newton/tangent_problem.hpp"
 
 namespace slipstick::solver {

@@ -6,7 +6,7 @@
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/newton/admissible.hpp"
 #include "solver/newton/convex_program.hpp"
-#include "solver/newton/progress.hpp"
+#include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
 
