@@ -158,12 +158,14 @@ void write_datasets(const fs::path& file, const std::vector<LongDataset>& datase
   std::vector<Content> contents;
   contents.reserve(datasets.size());
   for (const LongDataset& dataset : datasets) {
-    contents.push_back(
-        {{dataset.name, false, static_cast<std::size_t>(dataset.size)},
-         static_cast<std::size_t>(dataset.first),
-         [&dataset](const PutBytes& put) {
-           dataset.write([&](std::span<const double> values) { put(values.data(), values.size_bytes()); });
-         }});
+    contents.push_back({{dataset.name, false, static_cast<std::size_t>(dataset.size)},
+                        static_cast<std::size_t>(dataset.first),
+                        [&dataset](const PutBytes& put) {
+                          for (Index i = 0; i < dataset.pieces; ++i) {
+                            const std::vector<double> values = dataset.piece(i);
+                            put(values.data(), values.size() * sizeof(double));
+                          }
+                        }});
   }
   write_hdf5(file, contents, ranks);
 }

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,14 +15,13 @@ struct NamedText {
   std::string text;
 };
 
-/// Numbers under a name, worked out when they are written. Each rank has a part of them.
+/// Numbers under a name, worked out when they are written. Each rank has a part of them, in pieces.
 struct LongDataset {
-  using Put = std::function<void(std::span<const double> values)>;
-
   std::string name;
-  Index size;                                 ///< of the parts of all processes
-  Index first = 0;                            ///< of this process's part
-  std::function<void(const Put& put)> write;  ///< puts that part, piece by piece
+  Index size;    ///< of the parts of all ranks
+  Index first;   ///< of this rank's part
+  Index pieces;  ///< of this rank's part
+  std::function<std::vector<double>(Index number)> piece;
 };
 
 /// Writes an HDF5 file of 1-D datasets, each of its own length: numbers, and texts as their bytes. It is

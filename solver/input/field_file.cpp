@@ -148,18 +148,17 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
   datasets.reserve(columns.size());
   for (const FieldColumn& column : columns) {
     datasets.push_back({column.name, static_cast<Index>(std::accumulate(kept.begin(), kept.end(), 0.0)),
-                        static_cast<Index>(std::accumulate(kept.begin(), own_at, 0.0)),
-                        [&](const LongDataset::Put& put) {
+                        static_cast<Index>(std::accumulate(kept.begin(), own_at, 0.0)), rows.count(),
+                        [&](Index i) {
+                          const Index start = first + i * grid.n2;
                           std::vector<double> row(static_cast<std::size_t>(grid.n2));
-                          for (Index i = rows.first; i < rows.last; ++i) {
-                            const Index start = i * grid.n2;
-                            column.values(start, start + grid.n2, row.data());
-                            std::size_t count = 0;
-                            for (Index j = 0; j < grid.n2; ++j) {
-                              if (keep[start + j] != 0.0) row[count++] = row[static_cast<std::size_t>(j)];
-                            }
-                            put(std::span(row).first(count));
+                          column.values(start, start + grid.n2, row.data());
+                          std::size_t count = 0;
+                          for (Index j = 0; j < grid.n2; ++j) {
+                            if (keep[start + j] != 0.0) row[count++] = row[static_cast<std::size_t>(j)];
                           }
+                          row.resize(count);
+                          return row;
                         }});
   }
   write_datasets(file, datasets, grid.ranks);
