@@ -285,9 +285,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.solver.rounding_seed = static_cast<std::int64_t>(
       reader.number_or("solver.rounding_seed", static_cast<double>(scene.solver.rounding_seed)));
   reader.reject_unknown();
-  validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
-    reader.fail(key, value, allowed);
-  });
+  validate(scene, &reader);
   return without_last_digits(std::move(scene));
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 class Validation {
  public:
-  Validation(const Scene& scene, const Refuse& refuse) : scene_(scene), refuse_(refuse) {}
+  Validation(const Scene& scene, const SceneReader* reader) : scene_(scene), reader_(reader) {}
 
   void check() const {
     check_surfaces();
@@ -35,15 +35,21 @@ class Validation {
   }
 
  private:
+  [[noreturn]] void refuse(const std::string& key, const std::string& value,
+                           const std::string& allowed) const {
+    if (reader_ != nullptr) reader_->fail(key, value, allowed);
+    throw InputError(scene_.source.empty() ? "scene" : scene_.source.string(), key, value, allowed);
+  }
+
   void require(const std::string& key, double value, const Range& range) const {
-    if (!range.contains(value)) refuse_(key, fmt::format("{}", value), range.words);
+    if (!range.contains(value)) refuse(key, fmt::format("{}", value), range.words);
   }
 
   void check_surfaces() const {
     const auto& surfaces = scene_.surfaces;
     if (surfaces.empty() || surfaces.size() > kMaxShapes) {
-      refuse_("upper.shape", fmt::format("{} shapes", surfaces.size()),
-              fmt::format("from 1 to {}", kMaxShapes));
+      refuse("upper.shape", fmt::format("{} shapes", surfaces.size()),
+             fmt::format("from 1 to {}", kMaxShapes));
     }
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       check_surface(surfaces.size() == 1 ? "upper" : fmt::format("upper.shape[{}]", i), surfaces[i]);
@@ -72,7 +78,7 @@ class Validation {
   /// A rigid body has an infinite modulus.
   void check_material(const std::string& body, const Material& material) const {
     if (!(material.young_modulus > 0.0)) {
-      refuse_(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
+      refuse(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
     }
     require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
     if (!material.coating) return;
@@ -93,7 +99,7 @@ class Validation {
     const auto& [kind, values] = scene_.layer;
     const std::size_t count = kind == nullptr ? 0 : kind->parameters.size();
     if (values.size() != count) {
-      refuse_("layer.kind", fmt::format("{} numbers", values.size()), fmt::format("{}", count));
+      refuse("layer.kind", fmt::format("{} numbers", values.size()), fmt::format("{}", count));
     }
     for (std::size_t i = 0; i < count; ++i) {
       require("layer." + kind->parameters[i].key, values[i], kNotNegative);
@@ -102,13 +108,13 @@ class Validation {
 
   void check_steps() const {
     if (scene_.steps.empty() || scene_.steps.size() > kMaxSteps) {
-      refuse_("step", fmt::format("{} steps", scene_.steps.size()), fmt::format("from 1 to {}", kMaxSteps));
+      refuse("step", fmt::format("{} steps", scene_.steps.size()), fmt::format("from 1 to {}", kMaxSteps));
     }
     require("cycles", scene_.cycles, cycles_of(scene_.steps.size()));
     for (const Step& step : scene_.steps) {
       if (step.normal) require(step.key + ".normal", *step.normal, kPositive);
       if (!step.normal && scene_.contact.pressure != PressureModel::file) {
-        refuse_(step.key + ".normal", "(missing)", kPositive.words);
+        refuse(step.key + ".normal", "(missing)", kPositive.words);
       }
       if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
         require(step.key + ".moment_ratio", *ratio, kRatio);
@@ -122,7 +128,7 @@ class Validation {
       for (const double displacement : *step.displacement)
         require(step.key + ".displacement", displacement, kFinite);
       if (step.force != std::array<double, 2>{}) {
-        refuse_(step.key + ".displacement", "(together with a force)", "one of force, displacement");
+        refuse(step.key + ".displacement", "(together with a force)", "one of force, displacement");
       }
     }
   }
@@ -143,57 +149,52 @@ class Validation {
     const Step& step = scene_.steps.front();
     if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.solver.substeps > 1 || step.displacement ||
         step.force != std::array<double, 2>{}) {
-      refuse_("solver.method", fmt::format("\"{}\"", to_string(scene_.solver.method)),
-              "coulomb (this method knows one step of torsion about the origin)");
+      refuse("solver.method", fmt::format("\"{}\"", to_string(scene_.solver.method)),
+             "coulomb (this method knows one step of torsion about the origin)");
     }
   }
 
   void check_consistency() const {
     check_method();
     if (scene_.contact.coupling == Coupling::full && scene_.contact.pressure != PressureModel::solved) {
-      refuse_("contact.coupling", "\"full\"",
-              "auto, none, pressure (shear changes a pressure only where that is solved: "
-              "contact.pressure = \"solved\")");
+      refuse("contact.coupling", "\"full\"",
+             "auto, none, pressure (shear changes a pressure only where that is solved: "
+             "contact.pressure = \"solved\")");
     }
     const auto is_rigid = [](const Material& body) {
       return std::isinf(body.young_modulus) && !body.coating;
     };
     if (is_rigid(scene_.upper) && is_rigid(scene_.lower)) {
-      refuse_("lower.rigid", "true", "false, since the upper body is rigid");
+      refuse("lower.rigid", "true", "false, since the upper body is rigid");
     }
     const bool asks_hertz = scene_.contact.pressure == PressureModel::hertz ||
                             scene_.contact.pressure == PressureModel::hertz_averaged;
     if (asks_hertz && !is_bare(scene_)) {
-      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
-              "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
+      refuse("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
+             "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
     }
     if (asks_hertz && !hertzian_radii(scene_.surfaces)) {
-      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
-              "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
-              "along the grid's)");
+      refuse("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
+             "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
+             "along the grid's)");
     }
     if (find_height_map(scene_.surfaces) != nullptr && scene_.grid.extent) {
-      refuse_("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
+      refuse("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
     }
     if (scene_.contact.pressure == PressureModel::file && !scene_.grid.extent) {
-      refuse_("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
+      refuse("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
     }
   }
 
   const Scene& scene_;
-  const Refuse& refuse_;
+  const SceneReader* reader_;
 };
 
 }  // namespace
 
-void validate(const Scene& scene, const Refuse& refuse) { Validation(scene, refuse).check(); }
+void validate(const Scene& scene, const SceneReader* reader) { Validation(scene, reader).check(); }
 
-void validate(const Scene& scene) {
-  const std::string source = scene.source.empty() ? "scene" : scene.source.string();
-  validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
-    throw InputError(source, key, value, allowed);
-  });
-}
+void validate(const Scene& scene) { validate(scene, nullptr); }
 
 Range inner_radius_below(double radius) {
   return {"zero or positive, below the radius", [radius](double x) { return x >= 0.0 && x < radius; }};

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <functional>
-#include <string>
+#include <cstddef>
 
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/scene.hpp"
@@ -37,9 +36,8 @@ Range cycles_of(std::size_t steps);
 /// Each shape needs the memory of one field over the grid.
 inline constexpr std::size_t kMaxShapes = 1000;
 
-/// Throws an error with key, value and allowed values.
-using Refuse =
-    std::function<void(const std::string& key, const std::string& value, const std::string& allowed)>;
-void validate(const Scene& scene, const Refuse& refuse);
+/// Throws InputError for a value that is not allowed. reader: of the scene's file, with which the error names
+/// the place of the value; null: a program made the scene.
+void validate(const Scene& scene, const SceneReader* reader);
 
 }  // namespace slipstick::solver
