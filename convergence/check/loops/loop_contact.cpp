@@ -37,7 +37,7 @@ const std::vector<OtherProfile> kProfiles{
     {"a cone", "cone", 1.0},
     {"a flat punch", "flat_punch", std::numeric_limits<double>::infinity()}};
 
-std::function<double(double)> force_law(double gap) {
+LoadingCurve force_law(double gap) {
   const auto indenter = std::make_shared<const analytic::SelfSimilarIndenter>(gap);
   return [indenter](double t) {
     constexpr double kSlides = 1.0 - 1e-12;

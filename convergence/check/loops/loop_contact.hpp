@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "convergence/check/loops/loop_path.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -19,21 +19,21 @@ struct LoopWords {
 /// The first loading of a named profile.
 struct NamedLoading {
   std::string name;  ///< a cone
-  std::function<double(double)> loading;
+  LoadingCurve loading;
 };
 
 /// The contact that a loop is compared with. Its exact law: m, the load over the limit, at t, the motion in
 /// its unit.
 struct LoopContact {
-  std::function<double(double)> loading;  ///< m at t of first loading, odd
-  double stiffness;                       ///< dm/dt at rest
-  double normal_load;                     ///< N
-  double limit;                           ///< N m or N, of m = 1
-  double motion_unit;                     ///< rad or m, of t = 1
-  double limit_exponent;                  ///< d ln(limit)/d ln(normal load)
-  double stiffness_exponent;              ///< d ln(stiffness at rest)/d ln(normal load)
-  double one_body_upper;                  ///< stiffness with the lower body rigid, over the pair's
-  double one_body_lower;  ///< stiffness with the upper body rigid; infinite if the lower one is
+  LoadingCurve loading;
+  double stiffness;           ///< dm/dt at rest
+  double normal_load;         ///< N
+  double limit;               ///< N m or N, of m = 1
+  double motion_unit;         ///< rad or m, of t = 1
+  double limit_exponent;      ///< d ln(limit)/d ln(normal load)
+  double stiffness_exponent;  ///< d ln(stiffness at rest)/d ln(normal load)
+  double one_body_upper;      ///< stiffness with the lower body rigid, over the pair's
+  double one_body_lower;      ///< stiffness with the upper body rigid; infinite if the lower one is
   /// The limit of a uniform pressure over the exact one; only for torsion.
   std::optional<double> uniform_pressure_limit;
   std::optional<double> sphere_limit;  ///< of a sphere in torsion, M_lim/(mu W a), for the paper's Eq. (7)

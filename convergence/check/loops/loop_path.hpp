@@ -6,6 +6,9 @@
 
 namespace slipstick::convergence {
 
+/// m at t of first loading from rest, odd; or its inverse.
+using LoadingCurve = std::function<double(double)>;
+
 /// The history before a record: the contact was rotated from rest to `turned`, against the record's first
 /// direction, and back to the record's start. 0: the record starts from rest.
 struct LoopStart {
@@ -48,10 +51,10 @@ enum class BranchRule {
 };
 
 struct BranchLaw {
-  std::function<double(double)> loading;  ///< from rest, odd; for by_moment from loads against the motion on
+  LoadingCurve loading;  ///< from rest; for by_moment from loads against the motion on
   BranchRule rule = BranchRule::masing;
-  double stiffness = 0.0;                      ///< of loading at rest, for no_slip_back
-  std::function<double(double)> inverse = {};  ///< of loading, from -1 to 1, for by_moment
+  double stiffness = 0.0;     ///< of loading at rest, for no_slip_back
+  LoadingCurve inverse = {};  ///< of loading, from -1 to 1, for by_moment
 };
 
 /// The law's moment in each row.
