@@ -18,7 +18,6 @@
 #include "convergence/report/scene_page.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -74,12 +73,9 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   const Json laws = scaling_json(parse_timings(result.dump(), "timings.json"));
   convergence::write_json_file(data / "scaling.json", laws);
 
-  convergence::Progress progress(plane_size(request.quick), static_cast<double>(plane_size(request.quick)));
-  const Json plane =
-      measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
-                     .output = data / "finished",
-                     .quick = request.quick,
-                     .progress = [&](const std::string& point) { progress.finished(point, 1.0); }});
+  const Json plane = measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
+                                    .output = data / "finished",
+                                    .quick = request.quick});
   convergence::write_json_file(data / "plane.json", plane);
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},

@@ -91,10 +91,11 @@ Json run_survey(const fs::path& program, const std::vector<std::string>& names, 
   convergence::Progress progress(names.size(), static_cast<double>(names.size()));
   Json file;
   for (const std::string& name : names) {
-    const Json run = cache.find_or_compute(file_name(name), cache_key(program, name, length),
-                                           [&] { return run_benchmark(program, name, length); });
-    if (file.is_null()) file = {{"context", run.at("context")}, {"benchmarks", Json::array()}};
-    for (const Json& row : run.at("benchmarks")) file["benchmarks"].push_back(row);
+    const std::string key = cache_key(program, name, length);
+    std::optional<Json> run = cache.find(file_name(name), key);
+    if (!run) cache.keep(file_name(name), key, run.emplace(run_benchmark(program, name, length)));
+    if (file.is_null()) file = {{"context", run->at("context")}, {"benchmarks", Json::array()}};
+    for (const Json& row : run->at("benchmarks")) file["benchmarks"].push_back(row);
     progress.finished(name, 1.0);
   }
   return file;

@@ -161,7 +161,8 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   return json;
 }
 
-Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design) {
+Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design,
+                   convergence::Progress& progress) {
   const convergence::ResultCache cache(options.output);
   Json scene{{"name", fmt::format("paper-{}", moment_ratio)},
              {"moment_ratio", moment_ratio},
@@ -170,19 +171,14 @@ Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::
     const std::string key =
         convergence::prepare_run({.scene = options.scene, .overrides = all_overrides(moment_ratio, choice)})
             .cache_key;
-    scene["points"].push_back(cache.find_or_compute(file_name(moment_ratio, choice), key, [&] {
-      return measure_point(options.scene, moment_ratio, choice);
-    }));
-    if (options.progress) options.progress(label(moment_ratio, choice));
+    const std::string name = file_name(moment_ratio, choice);
+    std::optional<Json> point = cache.find(name, key);
+    if (!point) cache.keep(name, key, point.emplace(measure_point(options.scene, moment_ratio, choice)));
+    scene["points"].push_back(*std::move(point));
+    progress.finished(label(moment_ratio, choice), 1.0);
   }
   scene["exact"] = measure_exact(options.scene, moment_ratio);
   return scene;
-}
-
-std::size_t plane_size(bool quick) {
-  std::size_t size = 0;
-  for (const double ratio : plane_moment_ratios(quick)) size += plane_design(ratio, quick).size();
-  return size;
 }
 
 Json measure_plane(const PlaneOptions& options) {
@@ -191,8 +187,12 @@ Json measure_plane(const PlaneOptions& options) {
   for (const auto& [name, text] : kQuantities)
     plane["quantities"].push_back({{"name", name}, {"label", text}});
   plane["application_seconds"] = convergence::application_seconds(solver::read_scene(options.scene));
-  for (const double ratio : plane_moment_ratios(options.quick)) {
-    plane["scenes"].push_back(measure_scene(options, ratio, plane_design(ratio, options.quick)));
+  const std::vector<double> ratios = plane_moment_ratios(options.quick);
+  std::size_t points = 0;
+  for (const double ratio : ratios) points += plane_design(ratio, options.quick).size();
+  convergence::Progress progress(points, static_cast<double>(points));
+  for (const double ratio : ratios) {
+    plane["scenes"].push_back(measure_scene(options, ratio, plane_design(ratio, options.quick), progress));
   }
   judge_plane(plane);
   plane["provenance"] = convergence::provenance(1);

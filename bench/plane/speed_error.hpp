@@ -1,12 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "bench/plane/plane_design.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/progress.hpp"
 
 /// The speed-error plane: what each choice of method, operator, model, pressure, mesh and
 /// tolerance costs, and the error that it buys.
@@ -21,18 +21,15 @@ struct PlaneOptions {
   std::filesystem::path scene;   ///< the paper's, whose loads and choices are set
   std::filesystem::path output;  ///< folder of finished points, from which the same command continues
   bool quick = false;
-  std::function<void(const std::string& point)> progress = {};  ///< called after each point
 };
 
-/// Measures the plane, points one after the other in this process. Throws InputError for a scene that cannot
-/// be read or has no exact answer.
+/// Measures the plane, points one after the other in this process, and shows its progress. Throws InputError
+/// for a scene that cannot be read or has no exact answer.
 Json measure_plane(const PlaneOptions& options);
 
-/// Points that plane holds.
-std::size_t plane_size(bool quick);
-
 /// The points of one moment ratio (finished ones are read from the output folder) and the exact side.
-Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design);
+Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design,
+                   convergence::Progress& progress);
 
 /// One point: errors on several grids, seconds on the first, unless the result is wrong.
 Json measure_point(const std::filesystem::path& scene, double moment_ratio, const PlaneChoice& choice);

@@ -112,12 +112,4 @@ void ResultCache::keep(const std::string& name, const std::string& cache_key, co
   solver::replace_whole_file(file(name), json_text(entry(program_, cache_key, result, beside), 1) + "\n");
 }
 
-Json ResultCache::find_or_compute(const std::string& name, const std::string& cache_key,
-                                  const std::function<Json()>& compute) const {
-  if (std::optional<Json> found = find(name, cache_key)) return *std::move(found);
-  Json result = compute();
-  keep(name, cache_key, result);
-  return result;
-}
-
 }  // namespace slipstick::convergence

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,10 +31,6 @@ class ResultCache {
   /// Throws InputError if the result cannot be written.
   void keep(const std::string& name, const std::string& cache_key, const Json& result,
             const std::filesystem::path& beside = {}) const;
-
-  /// The result from disk, or computed and then written. Throws as keep().
-  Json find_or_compute(const std::string& name, const std::string& cache_key,
-                       const std::function<Json()>& compute) const;
 
  private:
   std::filesystem::path file(const std::string& name) const { return folder_ / (name + ".json"); }

@@ -103,10 +103,11 @@ TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
   const PlaneChoice choice{.cells = 16};
-  const Json first = bench::measure_scene(options, 0.5, {choice});
+  convergence::Progress progress(3, 3.0);
+  const Json first = bench::measure_scene(options, 0.5, {choice}, progress);
   PlaneChoice next = choice;
   next.tolerance = 1e-4;
-  const Json both = bench::measure_scene(options, 0.5, {choice, next});
+  const Json both = bench::measure_scene(options, 0.5, {choice, next}, progress);
   ASSERT_EQ(both["points"].size(), 2U);
   EXPECT_EQ(both["points"][0], first["points"][0]);  // seconds and all: it was not measured again
   EXPECT_LE(both["exact"]["error"].get<double>(), 1e-13);

@@ -18,12 +18,13 @@ namespace fs = std::filesystem;
 class ResultCacheTest : public ScratchFolder {
  protected:
   int computed_ = 0;
-  Json compute() {
-    ++computed_;
-    return {{"value", 0.1}};
-  }
   Json ask(const std::string& cache_key) {
-    return ResultCache(folder_).find_or_compute("point", cache_key, [this] { return compute(); });
+    const ResultCache cache(folder_);
+    if (std::optional<Json> found = cache.find("point", cache_key)) return *std::move(found);
+    ++computed_;
+    const Json result{{"value", 0.1}};
+    cache.keep("point", cache_key, result);
+    return result;
   }
 };
 
