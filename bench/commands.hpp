@@ -1,17 +1,10 @@
 #pragma once
 
-#include <functional>
-#include <iosfwd>
-#include <nlohmann/json_fwd.hpp>
-
-namespace CLI {
-class App;
-}
+#include "convergence/commands.hpp"
 
 namespace slipstick::bench {
 
-/// Runs a command that was given, see main.cpp: text for a person, the result, the exit code.
-using RunCommand = std::function<int(std::ostream&, nlohmann::ordered_json&)>;
+using convergence::RunCommand;
 
 /// Adds `bench`: times methods and meshes with the error of each and draws the figure, or compares two builds
 /// or two methods. The result is timings in Google Benchmark's JSON.

@@ -14,12 +14,6 @@ benchmark::internal::Benchmark* Suite::add(const std::string& name, Prepare prep
       ->Unit(benchmark::kMicrosecond);
 }
 
-void Suite::add_sizes(const std::string& family, const std::vector<solver::Index>& sizes,
-                      const std::function<Prepared(solver::Index)>& prepare) {
-  for (const solver::Index cells : sizes)
-    add(family + "/cells:" + std::to_string(cells), [prepare, cells] { return prepare(cells); });
-}
-
 void Suite::run(benchmark::State& state, const Entry& entry) {
   if (&entry != latest_) {
     prepared_ = {};  // before the next one takes memory

@@ -2,6 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <concepts>
 #include <deque>
 #include <functional>
 #include <map>
@@ -44,7 +45,10 @@ class Suite {
   benchmark::internal::Benchmark* add(const std::string& name, Prepare prepare);
   /// A benchmark for each number of cells along a side.
   void add_sizes(const std::string& family, const std::vector<solver::Index>& sizes,
-                 const std::function<Prepared(solver::Index)>& prepare);
+                 const std::invocable<solver::Index> auto& prepare) {
+    for (const solver::Index cells : sizes)
+      add(family + "/cells:" + std::to_string(cells), [prepare, cells] { return prepare(cells); });
+  }
 
  private:
   struct Entry {
