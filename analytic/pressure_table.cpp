@@ -74,18 +74,17 @@ std::ifstream open_table(const std::string& file) {
 TabulatedProfile read_tabulated_profile(const std::string& file) {
   std::ifstream stream = open_table(file);
   std::vector<PressurePoint> points;
-  std::vector<std::size_t> lines;
+  std::vector<std::string> places;
   std::size_t number = 0;
-  const auto at_line = [&](std::size_t line) { return fmt::format("{}:{}", file, line); };
   for (std::string text; std::getline(stream, text);) {
     ++number;
     if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     const std::string_view line = trimmed(text);
     if (line.empty() || line.front() == '#' || (points.empty() && is_header(line))) continue;
-    points.push_back(parse_point(line, at_line(number)));
-    lines.push_back(number);
+    places.push_back(fmt::format("{}:{}", file, number));
+    points.push_back(parse_point(line, places.back()));
   }
-  return tabulated_profile(file, std::move(points), [&](std::size_t i) { return at_line(lines[i]); });
+  return tabulated_profile(file, std::move(points), places);
 }
 
 }  // namespace slipstick::analytic

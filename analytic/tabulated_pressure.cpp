@@ -239,17 +239,17 @@ class Tabulated final : public Profile {
   throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: {}", where, what, value, allowed));
 }
 
-void check_points(const std::string& name, const Points& points, const PointPlace& where) {
+void check_points(const std::string& name, const Points& points, const std::vector<std::string>& places) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [radius, pressure] = points[i];
-    if (i == 0 && radius != 0) refuse(where(i), "radius", radius, "0 at the first point");
+    if (i == 0 && radius != 0) refuse(places[i], "radius", radius, "0 at the first point");
     if (i > 0 && !(radius > points[i - 1].radius && std::isfinite(radius)))
-      refuse(where(i), "radius", radius,
+      refuse(places[i], "radius", radius,
              fmt::format("finite and more than the one before, {}", points[i - 1].radius));
     if (!(pressure >= 0 && std::isfinite(pressure)))
-      refuse(where(i), "pressure", pressure, "finite and not negative");
+      refuse(places[i], "pressure", pressure, "finite and not negative");
     if (pressure == 0 && i + 1 < points.size())
-      refuse(where(i), "pressure", pressure, "> 0 except at the last point, where the contact ends");
+      refuse(places[i], "pressure", pressure, "> 0 except at the last point, where the contact ends");
   }
   constexpr std::size_t kMin = 16;  // every second of fewer points gives a poor error estimate
   if (points.size() < kMin)
@@ -260,7 +260,8 @@ void check_points(const std::string& name, const Points& points, const PointPlac
 }
 
 /// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
-void check_that_a_circle_sticks(const Profile& profile, const Points& points, const PointPlace& where) {
+void check_that_a_circle_sticks(const Profile& profile, const Points& points,
+                                const std::vector<std::string>& places) {
   constexpr std::size_t kMax = 200;  // more checks would say little and cost more than the profile
   const std::size_t step = 1 + points.size() / kMax;
   for (std::size_t i = 1; i + 1 < points.size(); i += step) {
@@ -269,7 +270,7 @@ void check_that_a_circle_sticks(const Profile& profile, const Points& points, co
       throw std::invalid_argument(fmt::format(
           "{}: the pressure rises beyond this radius so steeply that slip would not begin at the edge and no "
           "circle stick; allowed: pressures that fall outwards, or nearly",
-          where(i)));
+          places[i]));
   }
 }
 
@@ -288,14 +289,14 @@ double interpolated_pressure(const Points& points, double radius) {
 }
 
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
-                                   const PointPlace& where) {
-  check_points(name, points, where);
+                                   const std::vector<std::string>& places) {
+  check_points(name, points, places);
   const double a = points.back().radius;
   const double peak = std::ranges::max_element(points, {}, &PressurePoint::pressure)->pressure;
   for (auto& point : points) point = {.radius = point.radius / a, .pressure = point.pressure / peak};
 
   auto [profile, mean] = interpolate("file:" + name, points);
-  check_that_a_circle_sticks(*profile, points, where);
+  check_that_a_circle_sticks(*profile, points, places);
   return {.profile = std::move(profile),
           .radius = a,
           .mean_pressure = peak * mean,
@@ -304,8 +305,9 @@ TabulatedProfile tabulated_profile(const std::string& name, std::vector<Pressure
 }
 
 TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points) {
-  return tabulated_profile(name, points,
-                           [&](std::size_t i) { return fmt::format("{}, point {}", name, i + 1); });
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < points.size(); ++i) places.push_back(fmt::format("{}, point {}", name, i + 1));
+  return tabulated_profile(name, points, places);
 }
 
 }  // namespace slipstick::analytic

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,12 +36,9 @@ struct TabulatedProfile {
 /// that rises outwards too much).
 TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points);
 
-/// The name of a point in messages, by its index: a line of a file.
-using PointPlace = std::function<std::string(std::size_t)>;
-
-/// The same for points that have names of their own.
+/// The same for points that messages name by `places`, lines of a file.
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
-                                   const PointPlace& where);
+                                   const std::vector<std::string>& places);
 
 /// The same from a CSV file, see pressure_table.cpp: a radius and a pressure a line, perhaps under the header
 /// `radius,pressure`; empty lines and lines that begin with # do not count. Throws with file and line, and

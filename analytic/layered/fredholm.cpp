@@ -111,7 +111,7 @@ CosineTransform::CosineTransform(const RealFunction& excess, double thickness, d
 
 double Solution::operator()(double t) const {
   double value = right_side(t);
-  for (const Node& node : nodes) value -= node.weight * kernel(t, node.x) * node.value;
+  for (const Node& node : nodes) value -= node.weight * (transform->*kernel)(t, node.x) * node.value;
   return value;
 }
 
@@ -121,18 +121,20 @@ double Solution::moment(int power) const {
   return total;
 }
 
-std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
+std::vector<Solution> solve_fredholm(const CosineTransform& transform, Kernel kernel, double radius,
                                      const std::vector<RealFunction>& right_sides) {
-  const std::vector<Node> nodes = gauss_nodes(panel_ends(radius, 4 * thickness), points);
+  const std::vector<Node> nodes =
+      gauss_nodes(panel_ends(radius, 4 * transform.thickness()), transform.points());
   const auto size = static_cast<Eigen::Index>(nodes.size());
   const auto node = [&](Eigen::Index i) { return nodes[static_cast<std::size_t>(i)]; };
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
   for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index j = 0; j < size; ++j) matrix(i, j) += node(j).weight * kernel(node(i).x, node(j).x);
+    for (Eigen::Index j = 0; j < size; ++j)
+      matrix(i, j) += node(j).weight * (transform.*kernel)(node(i).x, node(j).x);
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(matrix);
   std::vector<Solution> solutions;
   for (const auto& right_side : right_sides) {
-    Solution& solution = solutions.emplace_back(Solution{right_side, kernel, nodes});
+    Solution& solution = solutions.emplace_back(Solution{right_side, &transform, kernel, nodes});
     Eigen::VectorXd values(size);
     for (Eigen::Index i = 0; i < size; ++i) values[i] = right_side(node(i).x);
     values = factors.solve(values).eval();

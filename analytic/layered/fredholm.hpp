@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "analytic/gsl.hpp"
@@ -65,12 +64,14 @@ class CosineTransform {
   double unit_;
   PiecewisePolynomial table_;
 };
-using Kernel = std::function<double(double t, double s)>;
+/// CosineTransform's even or odd.
+using Kernel = double (CosineTransform::*)(double t, double s) const;
 
 /// Solves f(t) + integral_0^radius K(t, s) f(s) ds = right_side(t). It is known at Gauss's points, and by the
 /// equation itself (Nystroem) anywhere else.
 struct Solution {
   RealFunction right_side;
+  const CosineTransform* transform;  ///< must outlive the solution
   Kernel kernel;
   std::vector<Node> nodes;
 
@@ -79,8 +80,8 @@ struct Solution {
   double moment(int power) const;
 };
 
-/// One solution for each right side; thickness as above.
-std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
+/// One solution for each right side.
+std::vector<Solution> solve_fredholm(const CosineTransform& transform, Kernel kernel, double radius,
                                      const std::vector<RealFunction>& right_sides);
 
 }  // namespace slipstick::analytic::layered

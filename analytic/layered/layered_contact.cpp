@@ -44,8 +44,7 @@ CosineTransform torsional_transform(const Pair& pair, double radius, Points poin
 /// psi R pi/E* on a given contact radius, under a sphere; under a flat punch psi pi/(E* approach).
 struct PressedRadius {
   PressedRadius(const CosineTransform& transform, double contact_radius, bool sphere)
-      : solutions(solve_fredholm([&](double t, double s) { return transform.even(t, s); }, contact_radius,
-                                 transform.thickness(), transform.points(),
+      : solutions(solve_fredholm(transform, &CosineTransform::even, contact_radius,
                                  {[](double) { return 1; }, [](double t) { return t * t; }})),
         approach(sphere ? solutions[1](contact_radius) / solutions[0](contact_radius) : 1),
         curved(sphere ? 1 : 0) {}

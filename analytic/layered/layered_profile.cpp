@@ -152,8 +152,7 @@ class Stick {
     for (Node& node : chi_) node.value = 2 / pi * node.x * h_;
     for (const Node& ring : pressure.rings(0, c.complement))
       chi_.push_back({1 - ring.x, ring.weight, 2 / pi * (1 - ring.x) * ring.value});
-    solutions_ = solve_fredholm([this](double t, double s) { return torsion_->odd(t, s); }, c.ratio,
-                                torsion_->thickness(), torsion_->points(),
+    solutions_ = solve_fredholm(*torsion_, &CosineTransform::odd, c.ratio,
                                 {[](double t) { return 4 / pi * t; }, [this](double t) { return moved(t); }});
     turn_ = solutions_[1](c.ratio) / solutions_[0](c.ratio);
     stiffness_ = 4 * pi * solutions_[0].moment(1);
