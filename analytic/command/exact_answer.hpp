@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
 
-/// The answers of the command `exact`, as JSON.
+/// The answers of the command `exact`, their JSON, and their text for a person.
 namespace slipstick::analytic {
 
 using Json = nlohmann::ordered_json;
@@ -55,18 +56,104 @@ struct ExactContact {
   std::optional<Units> units;
 };
 
-using StateOf = std::function<TorsionState(const Profile&)>;
+/// The number that names a state, and its option.
+struct GivenNumber {
+  const char* option;
+  double value;
+  TorsionState (*state)(double, const Profile&);
+};
+
+/// An error of range or form, with the option that brought the value.
+template <class Function>
+auto naming(const std::string& option, Function function) {
+  try {
+    return function();
+  } catch (const std::logic_error& error) {
+    throw std::domain_error(option + ": " + error.what());
+  }
+}
+
+/// A number, or the reason why it is missing.
+struct Number {
+  double value;
+  std::string missing = {};
+};
+
+struct AtRadius {
+  double radius;
+  Number number;
+};
+using AtRadii = std::vector<AtRadius>;
+
+struct StateNumbers {
+  TorsionState state;
+  AtRadii traction;
+  AtRadii pressure;
+};
+
+/// Estimated errors of a table's numbers.
+struct TableErrors {
+  StateNumbers numbers;
+  double moment_limit;
+  double mean_pressure;
+};
+
+/// Of a sphere: the paper's equations as printed, and each of approximations().
+struct OtherLaws {
+  AtRadii equation_1;
+  Number equation_5;
+  Number equation_7;
+  std::vector<Number> law_twists;
+};
+
+struct CyclePoint {
+  CycleState state;
+  AtRadii traction;
+};
+
+/// A result in SI units.
+struct UnitsRow {
+  const char* key;
+  const char* label;
+  const char* unit;
+  double value;
+};
 
 /// One state of first loading, tractions at some radii, and the way back from there to another M/M_lim.
-Json answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
-                  const std::optional<double>& unload_to);
+struct StateAnswer {
+  ExactContact contact;
+  StateNumbers numbers;
+  Number energy_lost_per_cycle;
+  std::optional<CyclePoint> unloaded = {};
+  std::optional<TableErrors> errors = {};
+  std::string errors_missing = {};  ///< the reason, where a table's errors are
+  std::optional<OtherLaws> printed = {};
+  std::vector<UnitsRow> units = {};
+};
+StateAnswer answer_state(const ExactContact& contact, const GivenNumber& given,
+                         const std::vector<double>& radii, const std::optional<double>& unload_to);
+Json to_json(const StateAnswer& answer);
+void write(std::ostream& out, const StateAnswer& answer);
 
 /// A history of loads at constant normal load: turning points M/M_lim in turn.
-Json answer_history(const ExactContact& contact, const std::vector<double>& turning_points,
-                    int points_per_branch, const std::vector<double>& radii);
+struct HistoryAnswer {
+  ExactContact contact;
+  std::vector<CyclePoint> history = {};
+  std::vector<CycleState> curve = {};
+  std::vector<UnitsRow> units = {};
+};
+HistoryAnswer answer_history(const ExactContact& contact, const std::vector<double>& turning_points,
+                             int points_per_branch, const std::vector<double>& radii);
+Json to_json(const HistoryAnswer& answer);
+void write(std::ostream& out, const HistoryAnswer& answer);
 
 /// One state of first loading with proven digits.
-Json answer_certified(const ExactContact& contact, certified::Quantity given, const std::string& value,
-                      const std::vector<std::string>& radii, int digits);
+struct CertifiedAnswer {
+  ExactContact contact;
+  std::vector<std::string> radii;
+  certified::State state;
+};
+Json to_json(const CertifiedAnswer& answer);
+void write(std::ostream& out, const CertifiedAnswer& answer);
 
 }  // namespace slipstick::analytic

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/command/exact_text.hpp"
+#include "analytic/command/exact_answer.hpp"
 
 namespace slipstick::analytic {
 
@@ -54,16 +54,6 @@ struct Options {
   std::optional<double> friction;
   std::optional<double> shear_modulus;
 };
-
-/// An error of range or form, with the option that brought the value.
-template <class Function>
-auto naming(const std::string& option, Function function) {
-  try {
-    return function();
-  } catch (const std::logic_error& error) {
-    throw std::domain_error(fmt::format("{}: {}", option, error.what()));
-  }
-}
 
 double number(const std::string& text) {
   char* end = nullptr;
@@ -108,29 +98,33 @@ std::size_t given(const Options& options) {
   throw std::invalid_argument("exact: no state given");
 }
 
+template <class Answer>
+int give(const Answer& answer, std::ostream& out, Json& result) {
+  result = to_json(answer);
+  write(out, answer);
+  return 0;
+}
+
 int run(const Options& options, std::ostream& out, Json& result) {
   const ExactContact exact = contact(options);
   if (!options.history.empty()) {
-    result = naming("--history",
-                    [&] { return answer_history(exact, options.history, options.points, radii(options)); });
-    write_history(out, exact, result);
-    return 0;
+    const auto answer = [&] {
+      return answer_history(exact, options.history, options.points, radii(options));
+    };
+    return give(naming("--history", answer), out, result);
   }
   const Given& from = kGiven[given(options)];
   const std::string& text = options.value[given(options)];
   if (options.certified) {
-    result = naming("--certified", [&] {
-      return answer_certified(exact, from.quantity, text, options.radii, *options.certified);
-    });
-    write_certified(out, exact, result);
-    return 0;
+    const auto state = [&] {
+      return certified::state(certified::profile_named(exact.name), from.quantity, text, options.radii,
+                              *options.certified);
+    };
+    return give(CertifiedAnswer{exact, options.radii, naming("--certified", state)}, out, result);
   }
-  const auto state = [&](const Profile& profile) {
-    return naming(from.option, [&] { return from.state(number(text), profile); });
-  };
-  result = answer_state(exact, state, radii(options), options.unload_to);
-  write_state(out, exact, result);
-  return 0;
+  const std::vector<double> at = radii(options);
+  const double value = naming(from.option, [&] { return number(text); });
+  return give(answer_state(exact, {from.option, value, from.state}, at, options.unload_to), out, result);
 }
 
 void add_state_options(CLI::App& exact, Options& options) {
