@@ -1,5 +1,6 @@
 """tidy_tree_test.py SOURCE_DIR: no file is longer than 450 lines and no C++ function than 60; a constant's
-name has one value at namespace scope throughout the program."""
+name has one value at namespace scope throughout the program; a type's name is defined once in a namespace, since
+two definitions of one name destroy each other's objects."""
 
 import pathlib
 import re
@@ -14,6 +15,9 @@ TEXTS = (*CPP, ".py", ".cmake", ".txt", ".md", ".sh", ".toml", ".j2")
 OTHER_SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum|concept|extern)\b[^()]*$|=\s*$")
 # Tables are not constants.
 CONSTANT = re.compile(r"^(?:inline )?constexpr (?!std::array)[\w:<>, ]+? (k[A-Z]\w*)(?: = ([^;]+)|(\{[^;]+\}));", re.M)
+
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;(]*\{", re.M)
+NAMESPACE = re.compile(r"^namespace ([\w:]+) \{", re.M)
 
 
 def functions(lines):
@@ -34,6 +38,7 @@ def functions(lines):
 
 def violations(root):
     values = {}
+    types = {}
     files = [file for folder in FOLDERS for file in (root / folder).rglob("*")] + list(root.glob("*"))
     for file in sorted(file for file in files if file.suffix in TEXTS and file.name != "CHANGELOG.md"):
         name, text = file.relative_to(root).as_posix(), file.read_text(errors="replace")
@@ -46,6 +51,12 @@ def violations(root):
             value = " ".join((found.group(2) or found.group(3)).split())
             place = f"{name}:{text.count(chr(10), 0, found.start()) + 1}"
             values.setdefault(found.group(1), {}).setdefault(value, place)
+        if file.suffix in (".hpp", ".h") and "tests" not in file.parts and (space := NAMESPACE.search(text)):
+            for found in TYPE.finditer(text):
+                types.setdefault(f"{space[1]}::{found[1]}", []).append(name)
+    for type_name, places in sorted(types.items()):
+        if len(places) > 1:
+            yield f"{places[0]}: {type_name} is defined here, and in {', '.join(places[1:])}"
     for constant, places in sorted(values.items()):
         for value, place in places.items() if len(places) > 1 else ():
             yield f"{place}: {constant} = {value} here, and elsewhere {', '.join(sorted(places.keys() - {value}))}"
