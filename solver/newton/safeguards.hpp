@@ -6,8 +6,8 @@
 /// Reports of an iteration, while it runs and at its end.
 namespace slipstick::solver {
 
-/// Called once per iteration: operator applications (or iterations) so far, and the relative gap (the relative
-/// change of the tractions in fixed-point methods). An empty one is never called.
+/// Called once per iteration: operator applications (or iterations) so far, and the relative gap (the
+/// relative change of the tractions in fixed-point methods). An empty one is never called.
 using Progress = std::function<void(long count, double error)>;
 
 /// Counts of the safeguards that Newton's method has used.

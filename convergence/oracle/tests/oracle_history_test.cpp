@@ -130,7 +130,8 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   }
   for (const double part : {0.1, 0.6, 0.95}) {
     const double r = part * a.contact_radius;
-    const double along = a.place.direction[0] * b.place.direction[0] + a.place.direction[1] * b.place.direction[1];  // 0: torsion
+    const double along = a.place.direction[0] * b.place.direction[0] +
+                         a.place.direction[1] * b.place.direction[1];  // 0: torsion
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
                 kHistoryTolerance * b.friction.reference_bound);
   }

@@ -257,7 +257,8 @@ static void test_ends(void) {
   solution = solved(SLIPSTICK_OK, 1e-3, 1, &(const char*){"solver.model=auto"});
   check(fabs(number(solution, "twist_error")) <= 1e-3 && number(solution, "accuracy.reached") <= 1e-3,
         "an accuracy is reached");
-  check(strstr(slipstick_solution_text(solution), "target 0.001") != NULL, "the text names the requested accuracy");
+  check(strstr(slipstick_solution_text(solution), "target 0.001") != NULL,
+        "the text names the requested accuracy");
   slipstick_solution_free(solution);
   solved(SLIPSTICK_BAD_INPUT, 2.0, 0, NULL);
 }
