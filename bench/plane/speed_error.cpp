@@ -10,6 +10,7 @@
 #include "convergence/orders/growth.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/cost.hpp"
@@ -149,7 +150,7 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   if (!invalid_reason.empty()) json["not_timed"] = invalid_reason;
   if (invalid_reason.empty()) {
     const solver::Scene timed = solver::read_scene(scene, all.front().overrides);
-    json["seconds"] = repeated_seconds([&] { return solver::solve(timed).seconds.total; });
+    json["seconds"] = repeated_seconds([&] { return convergence::solve_with_path(timed).seconds.total; });
   } else {
     set_missing(json, "seconds", invalid_reason);
   }

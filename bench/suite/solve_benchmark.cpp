@@ -50,7 +50,7 @@ Prepared whole_solve(const Scene& scene) {
   const CheckedSolution checked = solve_and_check(scene);
   return {.counters = counters(checked),
           .invalid_reason = checked.invalid_reason,
-          .timing = repeated([scene] { benchmark::DoNotOptimize(solver::solve(scene)); })};
+          .timing = repeated([scene] { benchmark::DoNotOptimize(convergence::solve_with_path(scene)); })};
 }
 
 /// With a force there is no symmetry and no exact answer, so the certificate bounds the error.
@@ -59,7 +59,7 @@ Prepared with_force(const Load& load) {
   Scene scene = load.scene();
   auto& step = scene.steps.front();
   step.force = {0.3 * scene.contact.friction.coefficient * *step.normal, 0.0};
-  const solver::Solution solution = solver::solve(scene);
+  const solver::Solution solution = convergence::solve_with_path(scene);
   const double load_error = std::max(solution.certificate.moment, solution.certificate.force);
   const bool holds = solution.certificate.gap <= scene.solver.tolerance && load_error <= kAllowedLoadError;
   return {.counters = {{"gap", solution.certificate.gap},
@@ -69,7 +69,7 @@ Prepared with_force(const Load& load) {
           .invalid_reason = !solution.message.empty() ? solution.message
                             : holds                   ? ""
                                                       : "the certificate does not hold",
-          .timing = repeated([scene] { benchmark::DoNotOptimize(solver::solve(scene)); })};
+          .timing = repeated([scene] { benchmark::DoNotOptimize(convergence::solve_with_path(scene)); })};
 }
 
 /// Each method to the tolerance that scenes commonly ask of it: a gap, or the change of Eq. (26).

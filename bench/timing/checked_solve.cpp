@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "convergence/results/exact_result.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -53,7 +54,8 @@ std::string error_above_bound(const Scene& scene, double moment_ratio, const con
 
 CheckedSolution solve_and_check(const Scene& scene) {
   const convergence::Oracle exact = convergence::require_oracle(scene);
-  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .invalid_reason = {}};
+  CheckedSolution checked{
+      .solution = convergence::solve_with_path(scene), .errors = {}, .invalid_reason = {}};
   checked.errors = convergence::compare(checked.solution, exact);
   checked.invalid_reason = invalid_reason(scene, checked.solution, checked.errors);
   return checked;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 
+#include "convergence/runs/path_uncertainty.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/solve.hpp"
@@ -19,7 +20,7 @@ WorkCase solve_case(const std::string& name, const std::string& scene_name,
   return {name, [=]() -> Work {
             const auto file = std::filesystem::path(SLIPSTICK_SCENES) / (scene_name + ".toml");
             return [name, scene = solver::read_scene(file, overrides)] {
-              const solver::Solution solution = solver::solve(scene);
+              const solver::Solution solution = convergence::solve_with_path(scene);
               if (solution.status != solver::Status::converged) {
                 throw std::runtime_error(fmt::format("{}: {}", name, solution.message));
               }
