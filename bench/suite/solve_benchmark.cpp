@@ -9,6 +9,7 @@
 
 #include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"
+#include "convergence/runs/path_uncertainty.hpp"
 
 namespace slipstick::bench {
 namespace {
