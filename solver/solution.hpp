@@ -28,18 +28,18 @@ struct Resolution {
   /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
   /// sticks.
   double stick_width = 0.0;
-  double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
-  double step = 0.0;        ///< relative: what the mesh leaves open of the step's own change
-  double stick_area = 0.0;  ///< cells, open besides what counting them leaves open
-  Quantities open;          ///< besides, where the stick area is small next to the limit: rad and m
-  Quantities mesh;          ///< what it leaves open of the whole history: over all its steps
-  Quantities path;          ///< what the number of parts of its steps leaves open
+  double slip_width = 0.0;  ///< mean number of cells across the slip area: twice its area over its outline
+  double step = 0.0;        ///< relative error of the step's own change that the mesh causes
+  double stick_area = 0.0;  ///< cells: error of the stick area, in addition to the error of counting cells
+  Quantities open;          ///< rad and m: additional error close to gross slip, where few cells stick
+  Quantities mesh;          ///< error that the mesh causes over all steps of the history
+  Quantities path;          ///< error that the number of parts of the steps causes
   /// The number that the loads leave open: the twist where a moment acts or has turned the contact, the
   /// moment where the twist is imposed; without torsion the displacement, or the force where that is imposed.
   double Quantities::*number = &Quantities::twist;
   double absolute = 0.0;  ///< mesh and path together, of `number`
-  /// The same, relative. Where it is worse than kPoorlyResolved the numbers are those of the mesh or of the
-  /// steps, not of the contact.
+  /// `absolute` relative to the number. Above kPoorlyResolved the number depends more on the mesh or on the
+  /// steps than on the contact.
   double uncertainty = 0.0;
 };
 /// Relative uncertainty from which on an answer is marked as poorly resolved.
@@ -111,7 +111,7 @@ struct QualityNumbers {
 /// The work that a step took, tangential unless another problem is named.
 struct WorkNumbers {
   int turns = 1;                       ///< between pressure and tractions, under full coupling
-  double operator_applications = 0.0;  ///< of all grids, in those of the finest one
+  double operator_applications = 0.0;  ///< on all grids, weighted by their cells over the finest grid's
   double pressure_applications = 0.0;  ///< of the normal operator, counted in the same way
   double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver
   double predicted_bytes = 0.0;        ///< of all that the step holds, once its contact was known
@@ -130,14 +130,15 @@ struct SolutionFields {
   Grid grid{};              ///< m
   Eigen::ArrayXd pressure;  ///< Pa
   Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
-  /// m, (u1, u2) by them, of the lower surface less that of the upper, in contact; elsewhere it may be zero.
+  /// m, (u1, u2): displacement of the lower surface by the tractions, minus the upper surface's, in contact;
+  /// elsewhere it may be zero.
   /// Where several processes share the grid, each may hold its own rows only.
   Eigen::ArrayXd elastic_displacement;
   Eigen::ArrayXd slip;   ///< m, (s1, s2) in this step
   Eigen::ArrayXd stick;  ///< 1 where the bodies stick, else 0
 };
 
-/// The numerical answer at the end of a step, in SI units (those of the scene).
+/// The numerical answer at the end of a step, in SI units like the scene.
 struct Solution : SolutionFields,
                   ContactNumbers,
                   StickNumbers,
@@ -147,7 +148,7 @@ struct Solution : SolutionFields,
                   WorkNumbers {
   Status status = Status::not_converged;
   std::string message;  ///< why it did not converge
-  Step loads;           ///< those of the step, as the scene has them
+  Step loads;           ///< the step as the scene gives it
   int cycle = 1;        ///< counted from 1
   Detail detail = Detail::all;
   FrictionLaw friction;        ///< in Pa

@@ -28,8 +28,8 @@ struct SolveOptions {
   /// Objects that solves of one size share; empty: each step shares with the next. They change no digit, and
   /// seconds are those of the solve by itself.
   std::shared_ptr<SolveCache> cache = {};
-  /// The history goes on from here: such a state of the same scene. The answer has the digits that it would
-  /// have had without the break. Empty: from the first step.
+  /// A state that the observer received, of the same scene: the history continues after its step, with the
+  /// digits of a solve without interruption. Empty: the history begins with its first step.
   std::shared_ptr<const HistoryState> resumed = {};
   Detail detail = Detail::all;
   /// The processes that share the solve; all of them call solve() with the same scene.

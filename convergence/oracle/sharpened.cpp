@@ -30,8 +30,8 @@ constexpr double kUnpredicted = 2.0;    ///< error that it has where it is tried
 constexpr double kNarrowestRing = 3.5;  ///< cells across the slip ring beyond a stick front
 constexpr double kFewestTried = 8.0;    ///< cells in which it is tried out
 
-/// How many layers of cells each cell of a set lies deep in it, 1 at its outline, kDeepest at most; below
-/// zero likewise, how deep outside. Nothing of the set lies beyond the grid.
+/// Depth of each cell in layers of cells: 1 for a cell of the set at its outline, kDeepest at most; -1 for
+/// the first layer outside. Cells beyond the grid count as outside.
 template <class Inside>
 Depths depths(const Grid& grid, const Inside& inside) {
   Depths depth(static_cast<std::size_t>(grid.cells()));

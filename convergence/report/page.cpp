@@ -7,10 +7,6 @@
 namespace slipstick::convergence {
 namespace {
 
-void set(Json& json, const std::string& key, const Number& number) {
-  set_number(json, key, number.value, number.why_missing);
-}
-
 template <class Part>
 void set(Json& json, const std::string& key, const std::optional<Part>& part) {
   if (part) json.emplace(key, Json(*part));
@@ -32,11 +28,11 @@ Json to_json(const SceneDescription& scene) {
 Json to_json(const PageNumber& row) {
   Json json{
       {"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
-  set(json, "reference", row.reference);
-  set(json, "error", row.error);
-  set(json, "mesh", row.mesh);
-  set(json, "path", row.path);
-  set(json, "uncertainty", row.uncertainty);
+  set_number(json, "reference", row.reference);
+  set_number(json, "error", row.error);
+  set_number(json, "mesh", row.mesh);
+  set_number(json, "path", row.path);
+  set_number(json, "uncertainty", row.uncertainty);
   return json;
 }
 
@@ -45,25 +41,25 @@ Json to_json(const CostPoint& point) {
             {"cells", point.cells},
             {"tolerance", point.tolerance},
             {"status", point.status}};
-  set(json, "seconds", point.seconds);
-  set(json, "error", point.error);
+  set_number(json, "seconds", point.seconds);
+  set_number(json, "error", point.error);
   return json;
 }
 
 Json to_json(const PageProgram& row) {
   Json json{{"name", row.name},       {"cells", row.cells},     {"status", row.status},
             {"version", row.version}, {"message", row.message}, {"number", row.number}};
-  set(json, "seconds", row.seconds);
-  set(json, "cpu_seconds", row.cpu_seconds);
-  set(json, "error", row.error);
+  set_number(json, "seconds", row.seconds);
+  set_number(json, "cpu_seconds", row.cpu_seconds);
+  set_number(json, "error", row.error);
   return json;
 }
 
 Json to_json(const OperatorTime& row) {
   Json json{{"operator", row.kind}, {"cells", row.cells}};
-  set(json, "seconds", row.seconds);
-  set(json, "low", row.low);
-  set(json, "high", row.high);
+  set_number(json, "seconds", row.seconds);
+  set_number(json, "low", row.low);
+  set_number(json, "high", row.high);
   return json;
 }
 
@@ -82,15 +78,15 @@ Json list(const std::vector<Part>& parts) {
 
 Json to_json(const Cost& cost) {
   Json json{{"number", cost.number}, {"points", list(cost.points)}, {"choices", cost.choices}};
-  set(json, "reference_uncertainty", cost.reference_uncertainty);
+  set_number(json, "reference_uncertainty", cost.reference_uncertainty);
   return json;
 }
 
 Json to_json(const OperatorTimes& times) {
   Json json{{"rows", list(times.rows)}, {"remark", times.remark}};
-  set(json, "cells", times.cells);
-  set(json, "low", times.low);
-  set(json, "high", times.high);
+  set_number(json, "cells", times.cells);
+  set_number(json, "low", times.low);
+  set_number(json, "high", times.high);
   return json;
 }
 

@@ -31,8 +31,8 @@ constexpr double kPathTolerance = 1e-7;
 /// before twists and both at once, spheres and ellipsoids of up to 10 to 1; 3.0 for an ellipsoid of 2 to 1
 /// that is twisted to 0.9 of its limit.
 constexpr double kPathSafety = 3.3;
-/// More where a step changes the normal load beside the others: a single part brings both at once, four parts
-/// one after the other, and they may agree by chance.
+/// Additional factor where a step changes the normal load and another load: a single part applies both at
+/// once, four parts one after the other, and the two answers may agree by chance.
 constexpr double kBothAtOnce = 2.5;
 /// Parts of a step in the finer history, over those in the coarse one.
 constexpr int kFinerPath = 4;
@@ -150,7 +150,7 @@ std::vector<StepEnd> ends_of(const Scene& scene) {
   return ends;
 }
 
-/// Cuts the history to at most so many steps.
+/// Cuts the history to whole cycles of at most `steps` steps.
 void shorten(Scene& scene, std::size_t steps) {
   const std::size_t cycles = std::max<std::size_t>(1, steps / scene.steps.size());
   scene.cycles = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(scene.cycles), cycles));

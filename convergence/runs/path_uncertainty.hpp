@@ -12,7 +12,7 @@
 namespace slipstick::convergence {
 
 /// Whether the number of parts can change the answer. It cannot where a surface of revolution between similar
-/// bodies is only twisted, under one normal load: slip goes on along circles. coupled: see solver::Solution.
+/// bodies is only twisted, under one normal load: slip stays along circles. coupled: see solver::Solution.
 bool depends_on_path(const solver::Scene& scene, bool coupled);
 
 class PathUncertainty {

@@ -11,10 +11,6 @@
 namespace slipstick::convergence {
 namespace {
 
-void set(Json& json, const std::string& key, const Number& number) {
-  set_number(json, key, number.value, number.why_missing);
-}
-
 Json to_json(const StudyRow& row) {
   Json json{{"cells", row.cells},
             {"h", row.h},
@@ -22,10 +18,10 @@ Json to_json(const StudyRow& row) {
             {"requested", row.requested},
             {"status", row.status}};
   if (row.message) json.emplace("message", *row.message);
-  for (const auto& [path, number] : row.numbers) set(json, path, number);
-  set(json, "seconds", row.seconds);
+  for (const auto& [path, number] : row.numbers) set_number(json, path, number);
+  set_number(json, "seconds", row.seconds);
   Json iteration;
-  for (const auto& [path, number] : row.iteration) set(iteration, path, number);
+  for (const auto& [path, number] : row.iteration) set_number(iteration, path, number);
   if (!iteration.is_null()) json.emplace("iteration", std::move(iteration));
   return json;
 }
@@ -38,16 +34,16 @@ Json to_json(const std::vector<StudyRow>& rows) {
 
 Json to_json(const MeshQuantity& at) {
   Json json{{"grids", at.grids}};
-  set(json, "mean", at.mean);
-  set(json, "spread", at.spread);
-  set(json, "noise", at.noise);
+  set_number(json, "mean", at.mean);
+  set_number(json, "spread", at.spread);
+  set_number(json, "noise", at.noise);
   return json;
 }
 
 /// With the quantity on each mesh under its path.
 Json to_json(const MeshRow& mesh, const std::vector<QuantityResult>& quantities, std::size_t at) {
   Json json{{"cells", mesh.cells}, {"h", mesh.h}, {"grids", mesh.grids}};
-  set(json, "seconds", mesh.seconds);
+  set_number(json, "seconds", mesh.seconds);
   for (const QuantityResult& quantity : quantities) json.emplace(quantity.path, to_json(quantity.meshes[at]));
   return json;
 }
@@ -69,21 +65,21 @@ Json to_json(const QuantityResult& quantity) {
 
 Json to_json(const Extrapolated& limit) {
   Json json;
-  set(json, "value", limit.value);
-  set(json, "uncertainty", limit.uncertainty);
+  set_number(json, "value", limit.value);
+  set_number(json, "uncertainty", limit.uncertainty);
   json.emplace("method", limit.method);
   return json;
 }
 
 Json to_json(const BudgetLine& line, const std::string& quantity, const MeshRow& mesh) {
   Json json{{"quantity", quantity}, {"cells", mesh.cells}, {"h", line.h}};
-  set(json, "observed", line.observed);
-  set(json, "discretisation", line.discretisation);
-  set(json, "iteration", line.iteration);
-  set(json, "rounding", line.rounding);
-  set(json, "reference", line.reference);
-  set(json, "trend", line.trend);
-  set(json, "staircase", line.staircase);
+  set_number(json, "observed", line.observed);
+  set_number(json, "discretisation", line.discretisation);
+  set_number(json, "iteration", line.iteration);
+  set_number(json, "rounding", line.rounding);
+  set_number(json, "reference", line.reference);
+  set_number(json, "trend", line.trend);
+  set_number(json, "staircase", line.staircase);
   return json;
 }
 
@@ -222,7 +218,7 @@ Json to_json(const SeriesResult& series) {
             {"tolerance", series.tolerance},
             {"tightened", series.tightened},
             {"basis", has_exact(series) ? "exact" : "extrapolated"}};
-  set(json, "reference_uncertainty", series.reference_uncertainty);
+  set_number(json, "reference_uncertainty", series.reference_uncertainty);
   Json meshes = Json::array();
   for (std::size_t i = 0; i < series.meshes.size(); ++i)
     meshes.push_back(to_json(series.meshes[i], series.quantities, i));
