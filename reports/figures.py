@@ -253,7 +253,7 @@ SECTIONS = [
         _paper("stick-radius", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
         _paper("equation-5", "Where Eq. (5) loses its digits", equation_5_digits),
         _paper("methods", "The paper’s method and others", method_figures.methods),
-        _paper("gap", "What the stopping test leaves", method_figures.certificate),
+        _paper("gap", "Gap in Coulomb’s law when the iteration stops", method_figures.certificate),
     ]),
     Section("what", "What is it?", [
         Figure("bodies", "The bodies", scene_figures.bodies),

@@ -105,7 +105,7 @@ def message(scene):
     found = [row for row in rows(scene, "time_to")
              if row["quantity"] == "twist" and row["method"] == "any" and row["point"] is not None]
     if not found:
-        raise Unavailable(f"“{text(scene, 'name')}” reaches none of the errors asked for")
+        raise Unavailable(f"“{text(scene, 'name')}” reaches none of the requested errors")
     parts = [f"{power_of_ten(row['error'])} takes {milliseconds(number(row, 'seconds'))} "
              f"({escape(short(scene['points'][row['point']]))})" for row in found]
     return f"At {LIMIT}{plain(number(scene, 'moment_ratio'))} a twist right to {'; '.join(parts)}."

@@ -133,7 +133,7 @@ def draw_budget(axis, series, quantity):
         axis.bar(where + (k - 1.5) * width, np.where(size > 0, size, np.nan), width, color=PART_COLOURS[part],
                  label=part)
     axis.set(yscale="log", ylabel="part of the error", xlabel="cells across the grid",
-             title=f"what the error of the {quantity_words(quantity)} is made of\n({style.verbatim(series.label)})")
+             title=f"parts of the error of the {quantity_words(quantity)}\n({style.verbatim(series.label)})")
     axis.set_xticks(where, [str(study_result.across(row)) for row in table])
     axis.grid(False, axis="x")
     low, high = axis.get_ylim()
@@ -215,7 +215,7 @@ def draw(study, head=0.0):
                       borderaxespad=0.1, bbox_to_anchor=(0.5, 1 - head / height))
     return FigureEntry(
         failures(study) + message(series, quantities), details(series, quantities),
-        "Log-log panels of errors against cell size with fitted orders, bars of what an error is made of, or "
+        "Log-log panels of errors against cell size with fitted orders, bars of the parts of an error, or "
         "errors against tolerances.", figure)
 
 
@@ -263,17 +263,17 @@ def _draw_budget_section(part, series, quantities):
 def _draw_tolerance_section(part, series, quantities):
     axes = _grid(part, 1 + len(quantities))
     draw_achieved(axes[0], series)
-    asked = Line2D([], [], linestyle=":", color=style.GREY, label="what was asked for")
-    test = Line2D([], [], linestyle="--", color=style.BLACK, linewidth=0.9, label="what the method’s own test reads")
+    asked = Line2D([], [], linestyle=":", color=style.GREY, label="requested")
+    test = Line2D([], [], linestyle="--", color=style.BLACK, linewidth=0.9, label="the method’s own stopping quantity")
     axes[0].legend(handles=[asked, test], loc="lower left", fontsize=7)
     for axis, (_, path) in zip(axes[1:], quantities):
         draw_tolerance_errors(axis, series, path)
-        error = [("error", dict(linestyle="-")), ("part due to stopping there", dict(linestyle="--", linewidth=0.9))]
+        error = [("error", dict(linestyle="-")), ("part left by stopping there", dict(linestyle="--", linewidth=0.9))]
         difference = [("relative difference from the tightest run", dict(linestyle="-"))]
         shown = error if has_exact_answer(series, path) else difference
         axis.legend(handles=[Line2D([], [], color=style.BLACK, label=words, **look) for words, look in shown],
                     loc="lower left", fontsize=7)
-    part.supxlabel("tolerance asked for", fontsize=9)
+    part.supxlabel("requested tolerance", fontsize=9)
 
 
 def failures(study):
@@ -301,7 +301,7 @@ def message(series, quantities):
         sentences.append(f"With {one.label}, the law of friction holds to a gap of {sci(_best(one, 'certificate.gap'))} at best, "
                          f"though its own test reads {sci(_best(one, 'change'))}.")
     if not stalled and any(one.tolerances for one in series):
-        sentences.append("Every tolerance that was asked for is reached.")
+        sentences.append("Every requested tolerance is reached.")
     return " ".join(sentences)
 
 
@@ -346,9 +346,9 @@ def details(series, quantities):
         sentences.append(f"Tolerances on a mesh of {study_result.across(mesh)} cells across.")
         exact = [has_exact_answer(series, path) for _, path in quantities]
         if any(exact):
-            sentences.append("The part of an error that is due to stopping there is its change as the iteration goes on.")
+            sentences.append("The part left by stopping there is the change of the error when the iteration continues.")
         if not all(exact):
-            sentences.append("Of what has no exact answer, the relative difference from the tightest run is shown.")
+            sentences.append("Where no exact answer exists, the relative difference from the tightest run is shown.")
         shown = moved_by_tolerance([one for one in series if one.tolerances], quantities)
         if same := [words for words, path in quantities if (words, path) not in shown]:
             sentences.append(f"The same at each tolerance: {', '.join(same)}.")

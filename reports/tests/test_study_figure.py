@@ -275,7 +275,7 @@ class Tolerances(unittest.TestCase):
         self.assertEqual([list(line.get_ydata()) for line in panel.lines], [[1e-2, 1e-4, 1e-6]] * 2)
         self.assertEqual([entry.get_text() for entry in panel.get_legend().get_texts()],
                          ["relative difference from the tightest run"])
-        self.assertIn("no exact answer, the relative difference from the tightest run", entry.details)
+        self.assertIn("the relative difference from the tightest run", entry.details)
 
     def test_what_no_tolerance_changes_has_no_panel(self):
         content = tolerance_study()
@@ -301,11 +301,11 @@ class Tolerances(unittest.TestCase):
                                   "own test reads 1.0×10⁻⁶.")
         content = tolerance_study()
         del content["series"]["paper"]
-        self.assertEqual(study_figure.draw(content).message, "Every tolerance that was asked for is reached.")
+        self.assertEqual(study_figure.draw(content).message, "Every requested tolerance is reached.")
 
     def test_details_name_the_mesh(self):
-        self.assertEqual(said(study_figure.details, tolerance_study()), "Tolerances on a mesh of 64 cells across. The part of "
-                         "an error that is due to stopping there is its change as the iteration goes on.")
+        self.assertEqual(said(study_figure.details, tolerance_study()), "Tolerances on a mesh of 64 cells across. The part "
+                         "left by stopping there is the change of the error when the iteration continues.")
 
     def test_one_mesh_has_no_table_of_orders(self):
         self.assertIsNone(tables.study_orders(tolerance_study()))
