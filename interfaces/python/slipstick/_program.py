@@ -23,7 +23,8 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
         output = Path(folder) / "result.json"
         process = subprocess.Popen(
             [os.fspath(PROGRAM), "--tied-to", str(os.getpid()), command, *(os.fspath(word) for word in words), "--quiet", "--json", os.fspath(output)],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+            env={**os.environ, "SLIPSTICK_PYTHON": sys.executable})
         assert process.stderr is not None
         said: list[str] = []
         try:
@@ -48,4 +49,5 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
 
 def main() -> None:
     """The program itself, as `slipstick` on the command line."""
+    os.environ.setdefault("SLIPSTICK_PYTHON", sys.executable)  # runs the commands that are modules of this package
     os.execv(PROGRAM, ["slipstick", *sys.argv[1:]])
