@@ -9,7 +9,6 @@ REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 HARD_OPTIONS ?=
-MUTANT_OPTIONS ?=
 SANITIZE ?=
 SANITIZER ?= asan-ubsan
 COMPILER ?=
@@ -20,7 +19,7 @@ PYTHON = "$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report gallery report-pdf test gate literature hard mutants sanitize coverage lint bench bench-against \
+.PHONY: help setup configure build report gallery report-pdf test gate literature hard sanitize coverage lint bench bench-against \
   bench-trust references reference hardest docs install python wheel deb clean
 
 help: ## show this list
@@ -81,9 +80,6 @@ hard: configure ## solve 782 hard scenes and equivalent ones, and audit all with
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
 	  [ $$status -gt 1 ] || $(PYTHON) convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
-
-mutants: configure ## check that tests and gates detect 240 small mistakes, made by rule (MUTANT_OPTIONS="--seed 2 --folder solver")
-	@$(PYTHON) -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
 SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))
 sanitize: setup ## run every test under sanitizers (SANITIZER=tsan: threads; COMPILER=clang++; a part: SANITIZE="operators analytic")
