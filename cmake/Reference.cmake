@@ -14,6 +14,6 @@ else()
   set(doxygen ${CMAKE_COMMAND} -E echo "NOT BUILT: the C++ reference, because doxygen is not installed")
 endif()
 add_custom_target(reference
-  COMMAND slipstick reference ${PROJECT_SOURCE_DIR}/docs/reference
+  COMMAND ${SLIPSTICK_PYTHON} -B ${PROJECT_SOURCE_DIR}/docs/generator/reference.py $<TARGET_FILE:slipstick> ${PROJECT_SOURCE_DIR}/docs/reference
   COMMAND ${doxygen}
   COMMENT "Writing docs/reference" VERBATIM)

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# reference_test.sh <program> <docs/reference>: the committed generated pages are the same as this program writes, and the
+# reference_test.sh <program> <docs> <python>: the committed generated pages are the same as those from this program, and the
 # completion works.
 set -uo pipefail
-program="$1" committed="$2"
+program="$1" docs="$2" python="$3"
 source "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 : > "$folder/calls"
 made="$folder/made"
 
-"$program" reference "$made" > "$folder/output" 2>&1
+"$python" -B "$docs/generator/reference.py" "$program" "$made" > "$folder/output" 2>&1
 expect "all pages are made" test "$(cd "$made" && echo *)" = \
   "commands.md gate.md hard.md program.md scene.md slipstick.1 slipstick.bash study.md"
 for page in "$made"/*; do
-  diff "$committed/${page##*/}" "$page" > "$folder/output" 2>&1
+  diff "$docs/reference/${page##*/}" "$page" > "$folder/output" 2>&1
   expect "${page##*/} is current (else: make reference)" test $? = 0
 done
 
