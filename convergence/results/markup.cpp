@@ -58,21 +58,6 @@ std::string markdown_text(std::string_view text) {
   return escaped;
 }
 
-std::string markdown_cell(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '\n') {
-      escaped += "<br>";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else {
-      if (c == '|' || c == '\\') escaped += '\\';
-      escaped += c;
-    }
-  }
-  return escaped;
-}
-
 namespace {
 
 std::string junit_counts(const std::vector<JunitCase>& cases) {

@@ -26,9 +26,6 @@ std::string shell_word(const std::string& text);
 /// an issue, formatting or HTML; control characters as in XML.
 std::string markdown_text(std::string_view text);
 
-/// This program's own Markdown in a cell of a table.
-std::string markdown_cell(std::string_view text);
-
 // ---------------------------------------------------------------- files of verdicts
 
 enum class CaseVerdict { passed, skipped, failure, error };
