@@ -43,12 +43,12 @@ build: configure ## build everything, the program is build/slipstick
 	$(call build,all)
 
 report: configure ## compute the validation page and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
-	$(call build,slipstick)
+	$(call build,slipstick slipstick_python)
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
 gallery: configure ## make a page of every scene of the project, with an index, build/gallery/index.html (5 minutes; REPORT_OPTIONS="--quick": 3)
-	$(call build,slipstick)
+	$(call build,slipstick slipstick_python)
 	@$(BUILD)/slipstick report convergence/scenes/*.toml --output $(BUILD)/gallery $(REPORT_OPTIONS)
 
 report-pdf: configure ## print the page of `make report` to build/report/report.pdf (needs chromium-driver and python3-selenium)
@@ -61,7 +61,7 @@ test: configure ## run every test
 
 gate: configure ## check the numbers stated in README.md, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	$(call build,slipstick slipstick_work)
-	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
+	@$(PYTHON) -B bench/work/count_work.py $(BUILD)/bench/slipstick_work $(BUILD)/gates/work.json
 	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \
 	    --set "load.moment_ratio=$$2" --output $(BUILD)/gates/digits --json "$(BUILD)/gates/$$1.json" --quiet; }; \
 	  digits digits 0.9 && digits digits-limit 0.999999 && digits digits-nothing 1e-9
@@ -105,7 +105,7 @@ lint: setup ## check the format and clang-tidy's rules, 14 or later (only change
 	  --extra-arg=-Wno-unused-command-line-argument --extra-arg=-Wno-unknown-warning-option
 
 bench: configure ## time everything, each time with its error, and draw the results
-	$(call build,slipstick slipstick_benchmarks)
+	$(call build,slipstick slipstick_python slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
 peers: configure ## install other programs from PyPI (build/peers) and Debian, draw pages with their answers, run simulators

@@ -12,26 +12,26 @@ target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick
 target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 
 # Counts the work that solves take: the linker puts the functions of work/work_counts.cpp in the place of those counted.
-add_library(slipstick_work_counts STATIC work/work_counts.cpp work/work_counts_cases.cpp
-  work/work_counts_instructions.cpp)
-slipstick_configure(slipstick_work_counts)
-target_link_libraries(slipstick_work_counts PUBLIC slipstick::convergence slipstick::solver slipstick::allocations PkgConfig::FFTW
-  PRIVATE fmt::fmt)
-target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
+add_executable(slipstick_work work/work_program.cpp work/work_counts.cpp)
+slipstick_configure(slipstick_work)
+target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
+target_link_libraries(slipstick_work PRIVATE slipstick::convergence slipstick::solver slipstick::allocations PkgConfig::FFTW
+  CLI11::CLI11 fmt::fmt)
+target_compile_definitions(slipstick_work PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 foreach(function
     fftw_plan_dft_1d fftw_plan_many_dft
     fftw_plan_many_dft_r2c fftw_plan_many_dft_c2r
     fftw_execute_dft fftw_execute_dft_r2c
     fftw_execute_dft_c2r
     _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)
-  target_link_options(slipstick_work_counts INTERFACE -Wl,--wrap=${function})
+  target_link_options(slipstick_work PRIVATE -Wl,--wrap=${function})
 endforeach()
-add_executable(slipstick_work work/work_counts_program.cpp)
-slipstick_configure(slipstick_work)
-slipstick_compile_unoptimised(slipstick_work)
-target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
-target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
-slipstick_tests(work_counts_tests SOURCES work/tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
+if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
+  add_dependencies(tests slipstick_work)
+  add_test(NAME bench.work_counts COMMAND ${SLIPSTICK_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/work/tests/work_counts_test.py
+    $<TARGET_FILE:slipstick_work>)
+  set_tests_properties(bench.work_counts PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
+endif()
 
 # Needs a quarter of an hour on an idle machine, so only `make bench-trust` runs it.
 include(tests/sleeping_operator.cmake)

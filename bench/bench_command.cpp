@@ -7,12 +7,9 @@
 #include <ostream>
 
 #include "bench/commands.hpp"
-#include "bench/compare/ab_run.hpp"
-#include "bench/compare/benchmark_program.hpp"
-#include "bench/plane/accuracy_from_plane.hpp"
 #include "bench/plane/speed_error.hpp"
-#include "bench/scaling/scaling_result.hpp"
 #include "convergence/hard/hard_run.hpp"
+#include "convergence/programs/package_module.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/scene_cost.hpp"
 #include "convergence/report/scene_page.hpp"
@@ -35,8 +32,9 @@ namespace fs = std::filesystem;
 constexpr const char* kCompared =
     "^(application/(direct|dcfft[a-z_]*)|influence/tangential|setup/dcfft[a-z_]*|normal/solve|solve/[a-z_]+)"
     "/cells:(64|256)(/permille:900)?$|^exact/.*/hertz$";
-/// A survey's: repetitions for intervals.
-const RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7, .tied_by = convergence::own_program()};
+/// A survey's length of one run, with repetitions for intervals.
+constexpr double kSurveySeconds = 0.02;
+constexpr int kSurveyRepetitions = 7;
 
 struct BenchRequest {
   std::string scene;
@@ -49,7 +47,7 @@ struct BenchRequest {
   std::string against;
   std::vector<std::string> pair;
   int rounds = 16;
-  double effect = ComparisonRules{}.effect;
+  double effect = 0.10;
   bool quick = false;
 };
 
@@ -58,8 +56,16 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
   const std::string origin =
       fmt::format("Measured by slipstick bench on {}, {:%Y-%m-%d}.",
                   plane.at("provenance").at("cpu").get<std::string>(), fmt::gmtime(std::time(nullptr)));
+  const Json request{{"what", "accuracy"}, {"plane", plane}, {"origin", origin}};
   convergence::write_option_file("--accuracy-data", file,
-                                 convergence::accuracy_toml(accuracy_from_plane(plane), origin));
+                                 convergence::run_package_module("speed.plane", request).text);
+}
+
+/// Runs a program of Google Benchmark; `what` and further keys are the module's.
+convergence::ModuleAnswer run_benchmarks(const BenchRequest& request, Json what) {
+  what["program"] = request.program;
+  what["starter"] = convergence::own_program().string();
+  return convergence::run_package_module("speed.programs", what);
 }
 
 /// Everything, one after the other, and the page.
@@ -67,20 +73,25 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   const fs::path folder = request.output;
   const fs::path data = folder / "data";
   convergence::require_output("--accuracy-data", request.accuracy_data);
-  result = run_survey(request.program, list_benchmarks(request.program, request.filter), kSurveyLength,
-                      data / "finished");
+  const convergence::ModuleAnswer timed = run_benchmarks(request, {{"what", "survey"},
+                                                                   {"filter", request.filter},
+                                                                   {"seconds", kSurveySeconds},
+                                                                   {"repetitions", kSurveyRepetitions},
+                                                                   {"folder", (data / "finished").string()}});
+  result = timed.result;
   convergence::write_json_file(data / "timings.json", result);
-  const Json laws = scaling_json(parse_timings(result.dump(), "timings.json"));
-  convergence::write_json_file(data / "scaling.json", laws);
+  convergence::write_json_file(data / "scaling.json", timed.rest.at("scaling"));
 
   const Json plane = measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
                                     .output = data / "finished",
                                     .quick = request.quick});
-  convergence::write_json_file(data / "plane.json", plane);
+  const convergence::ModuleAnswer judged =
+      convergence::run_package_module("speed.plane", {{"what", "judge"}, {"plane", plane}});
+  convergence::write_json_file(data / "plane.json", judged.result);
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
-  text << crossovers_text(laws) << times_text(plane) << "page: " << (folder / "index.html").string() << '\n';
+  text << timed.text << judged.text << "page: " << (folder / "index.html").string() << '\n';
   return 0;
 }
 
@@ -90,19 +101,22 @@ int compare_ab(const BenchRequest& request, std::ostream& text, Json& result) {
   const fs::path folder = request.output;
   solver::make_folder(folder);
   solver::require_writable(folder);
-  const auto pairs = builds ? two_builds(request.against, request.program,
-                                         request.filter.empty() ? kCompared : request.filter)
-                            : two_methods(request.program, request.pair[0], request.pair[1]);
-  ABRunResult found =
-      run_ab(pairs, request.rounds, {.effect = request.effect}, {.tied_by = convergence::own_program()});
-  found.report.base = builds ? request.against : request.pair[0];
-  found.report.now = builds ? request.program : request.pair[1];
-  convergence::write_json_file(folder / "base.json", found.files[0]);
-  convergence::write_json_file(folder / "new.json", found.files[1]);
-  convergence::write_json_file(folder / "comparison.json", comparison_json(found.report));
-  result = found.files[1];
-  text << comparison_text(found.report);
-  return exit_code(found.report.comparison);
+  Json what{{"what", builds ? "builds" : "methods"}, {"rounds", request.rounds}, {"effect", request.effect}};
+  if (builds) {
+    what["base"] = request.against;
+    what["filter"] = request.filter.empty() ? kCompared : request.filter;
+  } else {
+    what["base"] = request.pair[0];
+    what["now"] = request.pair[1];
+  }
+  const convergence::ModuleAnswer found = run_benchmarks(request, what);
+  const Json& files = found.rest.at("files");
+  convergence::write_json_file(folder / "base.json", files[0]);
+  convergence::write_json_file(folder / "new.json", files[1]);
+  convergence::write_json_file(folder / "comparison.json", found.result);
+  result = files[1];
+  text << found.text;
+  return found.exit_code;
 }
 
 /// One scene: methods, meshes, direct sums against convolution, other programs.

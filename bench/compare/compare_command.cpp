@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -6,22 +6,23 @@
 #include <ostream>
 
 #include "bench/commands.hpp"
-#include "bench/compare/comparison.hpp"
-#include "bench/compare/comparison_report.hpp"
+#include "convergence/programs/package_module.hpp"
+#include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 
 namespace slipstick::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using namespace convergence;
 using solver::InputError;
 
 struct CompareRequest {
   std::string base;
   std::string now;
   std::string effect = "10%";
-  double level = ComparisonRules{}.level;
+  double level = 0.01;
   bool same_machine = false;
   bool debug_library = false;
   std::string summary;
@@ -45,28 +46,77 @@ double read_effect(const std::string& text) {
   return effect;
 }
 
-ComparisonRules rules_of(const CompareRequest& request) {
+Json rules_of(const CompareRequest& request) {
   if (!(request.level > 0.0 && request.level <= 0.5)) {
     throw InputError("command line", "--level", fmt::format("{}", request.level),
                      "a chance above 0, at most 0.5");
   }
-  return {.effect = read_effect(request.effect),
-          .level = request.level,
-          .same_machine = request.same_machine,
-          .debug_library = request.debug_library};
+  return {{"effect", read_effect(request.effect)},
+          {"level", request.level},
+          {"same_machine", request.same_machine},
+          {"debug_library", request.debug_library}};
+}
+
+std::string read_timings(const std::string& file) {
+  constexpr const char* kAllowed = "what a Google Benchmark program writes with --benchmark_format=json";
+  std::string text = solver::read_input_file(file, solver::kLargestJson, kAllowed);
+  if (as_utf8(text) != text) {
+    throw InputError(file, fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
+  }
+  return text;
+}
+
+/// The worst first.
+std::string comparison_markdown(const Json& report) {
+  const auto word = [&](const char* key) { return report.at(key).get<std::string>(); };
+  std::string text =
+      fmt::format("### {}\n\n{}; {}.\n\n", word("title"), markdown_text(word("heading")), word("rules"));
+  for (const Json& each : report.at("cases")) {
+    if (each.at("type") == "obstacle")
+      text += fmt::format("- could not judge: {}\n", markdown_text(each.at("message").get<std::string>()));
+  }
+  std::vector<std::string> rows;
+  for (const Json& cells : report.at("rows")) {
+    auto row = cells.get<std::vector<std::string>>();
+    for (std::string* const users : {&row.front(), &row.back()}) *users = markdown_text(*users);
+    rows.push_back(fmt::format("| {} |", fmt::join(row, " | ")));
+  }
+  const auto header = report.at("header").get<std::vector<std::string>>();
+  return markdown_with_table(text + "\n", fmt::format("| {} | |", fmt::join(header, " | ")), rows,
+                             "benchmarks");
+}
+
+/// One case for each benchmark and each obstacle.
+std::string comparison_junit(const Json& report) {
+  const std::map<std::string, CaseVerdict> verdicts{
+      {"passed", CaseVerdict::passed}, {"failure", CaseVerdict::failure}, {"error", CaseVerdict::error}};
+  std::vector<JunitCase> cases;
+  for (const Json& each : report.at("cases")) {
+    cases.push_back({.suite = report.at("heading"),
+                     .classname = "compare",
+                     .name = each.at("name"),
+                     .seconds = each.value("seconds", 0.0),
+                     .verdict = verdicts.at(each.at("verdict")),
+                     .type = each.at("type"),
+                     .message = each.value("message", ""),
+                     .details = each.value("details", ""),
+                     .shown = each.value("shown", "")});
+  }
+  return junit_text("slipstick compare", cases);
 }
 
 int run_compare(const CompareRequest& request, std::ostream& text, Json& result) {
-  const ComparisonRules rules = rules_of(request);
-  convergence::require_output("--summary", request.summary);
-  convergence::require_output("--junit", request.junit);
-  const TwoTimings files{read_timings(request.base), read_timings(request.now)};
-  const ComparisonReport report{request.base, request.now, rules, compare(files, rules), {}};
-  result = comparison_json(report);
-  text << comparison_text(report);
-  convergence::write_option_file("--summary", request.summary, comparison_markdown(report));
-  convergence::write_option_file("--junit", request.junit, comparison_junit(report));
-  return exit_code(report.comparison);
+  Json files{{"rules", rules_of(request)}, {"base", request.base}, {"new", request.now}};
+  require_output("--summary", request.summary);
+  require_output("--junit", request.junit);
+  files["base_text"] = read_timings(request.base);
+  files["new_text"] = read_timings(request.now);
+  const ModuleAnswer answer = run_package_module("speed.compare", files);
+  result = answer.result;
+  text << answer.text;
+  write_option_file("--summary", request.summary, comparison_markdown(answer.rest));
+  write_option_file("--junit", request.junit, comparison_junit(answer.rest));
+  return answer.exit_code;
 }
 
 constexpr const char* kCompareFooter = R"(Example:

@@ -1,13 +1,20 @@
 #include "bench/plane/speed_error.hpp"
 
 #include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bench/timing/checked_solve.hpp"
-#include "convergence/orders/growth.hpp"
+#include "convergence/programs/package_module.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
@@ -25,21 +32,15 @@ using convergence::set_missing;
 using convergence::set_number;
 using solver::Index;
 
-/// Quantities of the plane, and their names in text.
-const std::vector<std::pair<std::string, std::string>> kQuantities{
-    {"twist", "twist"},
-    {"traction_l1", "traction, mean (L1)"},
-    {"traction_l2", "traction, root mean square (L2)"},
-    {"stick_radius", "stick radius"}};
-
-/// Grids of a mesh, whose edges lie differently in the cells: four, and fewer where one takes seconds.
-int grids_of(Index cells) { return cells <= 256 ? 4 : cells <= 512 ? 3 : 2; }
-
 /// Cells along a side of the grid on which the exact side gives tractions.
 constexpr Index kExactCells = 128;
 
-std::vector<double> values(const Errors& errors) {
-  return {errors.twist, errors.traction.at_centres.l1, errors.traction.at_centres.l2, errors.stick_radius};
+/// The quantities of the plane.
+std::map<std::string, double> values(const Errors& errors) {
+  return {{"twist", errors.twist},
+          {"traction_l1", errors.traction.at_centres.l1},
+          {"traction_l2", errors.traction.at_centres.l2},
+          {"stick_radius", errors.stick_radius}};
 }
 
 /// Work that returns its own seconds is repeated at least kMinRepetitions times, then until kMaxRepetitions
@@ -47,8 +48,11 @@ std::vector<double> values(const Errors& errors) {
 constexpr std::size_t kMinRepetitions = 3;
 constexpr std::size_t kMaxRepetitions = 9;
 constexpr double kEnoughSeconds = 1.0;
+constexpr double kUpperQuantile = 0.975;  // the upper end of a 95 % interval
 
-/// The median of repeated times with its 95 % interval.
+/// The median of repeated times with its 95 % interval: Student's, of their logarithms, widened as a median
+/// is less certain than a mean (the median of many normal deviates has sqrt(pi/2) of their mean's standard
+/// error).
 Json repeated_seconds(const std::function<double()>& work) {
   std::vector<double> seconds;
   double total = 0.0;
@@ -56,16 +60,14 @@ Json repeated_seconds(const std::function<double()>& work) {
     seconds.push_back(work());
     total += seconds.back();
   }
-  const convergence::TypicalSeconds time = convergence::typical(seconds);
-  return {{"median", time.seconds}, {"low", time.low}, {"high", time.high}, {"repetitions", seconds.size()}};
-}
-
-Json choice_json(const PlaneChoice& choice) {
-  Json json;
-  for (const ChoiceKey& key : kChoiceKeys) json[key.name] = choice.*key.word;
-  json["cells"] = choice.cells;
-  json["tolerance"] = choice.tolerance;
-  return json;
+  std::vector<double> logs;
+  for (const double one : seconds) logs.push_back(std::log(one));
+  const auto count = static_cast<double>(logs.size());
+  const double error = std::sqrt(0.5 * std::numbers::pi / count) * gsl_stats_sd(logs.data(), 1, logs.size());
+  const double factor = std::exp(error * gsl_cdf_tdist_Pinv(kUpperQuantile, count - 1.0));
+  const double median = std::exp(gsl_stats_median(logs.data(), 1, logs.size()));
+  return {
+      {"median", median}, {"low", median / factor}, {"high", median * factor}, {"repetitions", logs.size()}};
 }
 
 double root_mean_square(const std::vector<double>& values) {
@@ -75,41 +77,28 @@ double root_mean_square(const std::vector<double>& values) {
 }
 
 /// errors: of each quantity, of each grid.
-void add_errors(Json& json, const std::vector<std::vector<double>>& errors) {
-  for (std::size_t i = 0; i < kQuantities.size(); ++i) {
-    const std::string& name = kQuantities[i].first;
-    set_number(json["error"], name, root_mean_square(errors[i]), "a grid's error is not a number");
-    for (const double error : errors[i]) {
+void add_errors(Json& json, const std::map<std::string, std::vector<double>>& errors) {
+  for (const auto& [name, of_grids] : errors) {
+    set_number(json["error"], name, root_mean_square(of_grids), "a grid's error is not a number");
+    for (const double error : of_grids) {
       json["errors"][name].push_back(std::isfinite(error) ? Json(error) : Json(nullptr));
     }
   }
 }
 
-std::vector<std::string> all_overrides(double moment_ratio, const PlaneChoice& choice) {
-  std::vector<std::string> all = overrides(choice);
-  all.push_back(fmt::format("load.moment_ratio={}", moment_ratio));
-  return all;
-}
-
-std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, double moment_ratio,
-                                           const PlaneChoice& choice) {
+std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, const PlaneRun& run) {
   convergence::Study study;
   study.source = study.scene = scene;
-  study.overrides = all_overrides(moment_ratio, choice);
-  study.cells = {choice.cells};
-  study.shifts = grids_of(choice.cells);
+  study.overrides = run.overrides;
+  study.cells = {run.choice.at("cells").get<Index>()};
+  study.shifts = run.grids;
   return convergence::make_series(study).front().meshes.front().grids;
-}
-
-/// The name of the point's file.
-std::string file_name(double moment_ratio, const PlaneChoice& choice) {
-  return fmt::format("plane-{}-{}-{}-{}", moment_ratio, choice_words(choice, "-"), choice.cells,
-                     choice.tolerance);
 }
 
 /// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
 Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
-  const solver::Scene scene = solver::read_scene(file, all_overrides(moment_ratio, {.cells = kExactCells}));
+  const solver::Scene scene = solver::read_scene(file, {fmt::format("grid.cells=[{0}, {0}]", kExactCells),
+                                                        fmt::format("load.moment_ratio={}", moment_ratio)});
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());
@@ -124,24 +113,22 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
   return {{"seconds", seconds}, {"error", error}, {"cells", kExactCells}};
 }
 
-std::string label(double moment_ratio, const PlaneChoice& choice) {
-  return fmt::format("M/M_lim {}: {}, {} cells, tolerance {}", moment_ratio, choice_words(choice, " "),
-                     choice.cells, choice.tolerance);
-}
-
 }  // namespace
 
-Json measure_point(const std::filesystem::path& scene, double moment_ratio, const PlaneChoice& choice) {
-  Json json = choice_json(choice);
-  std::vector<std::vector<double>> errors(kQuantities.size());
+PlaneRun plane_run(const Json& json) {
+  return {json.at("choice"), json.at("grids"), json.at("overrides"), json.at("file"), json.at("label")};
+}
+
+Json measure_point(const std::filesystem::path& scene, const PlaneRun& run) {
+  Json json = run.choice;
+  std::map<std::string, std::vector<double>> errors;
   double across = 0.0;
   std::string invalid_reason;
   std::optional<CheckedSolution> first;
-  const auto all = grids(scene, moment_ratio, choice);
+  const auto all = grids(scene, run);
   for (const convergence::GridChoice& grid : all) {
     CheckedSolution measured = solve_and_check(solver::read_scene(scene, grid.overrides));
-    const std::vector<double> of_grid = values(measured.errors);
-    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(of_grid[i]);
+    for (const auto& [name, error] : values(measured.errors)) errors[name].push_back(error);
     across += 2.0 * measured.solution.contact_radius / grid.size / static_cast<double>(all.size());
     if (invalid_reason.empty()) invalid_reason = measured.invalid_reason;
     if (!first) first = std::move(measured);
@@ -162,40 +149,32 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   return json;
 }
 
-Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design,
-                   convergence::Progress& progress) {
+Json measure_load(const PlaneOptions& options, const Json& load, convergence::Progress& progress) {
   const convergence::ResultCache cache(options.output);
-  Json scene{{"name", fmt::format("paper-{}", moment_ratio)},
-             {"moment_ratio", moment_ratio},
-             {"points", Json::array()}};
-  for (const PlaneChoice& choice : design) {
+  Json scene{{"name", load.at("name")}, {"moment_ratio", load.at("moment_ratio")}, {"points", Json::array()}};
+  for (const Json& each : load.at("runs")) {
+    const PlaneRun run = plane_run(each);
     const std::string key =
-        convergence::prepare_run({.scene = options.scene, .overrides = all_overrides(moment_ratio, choice)})
-            .cache_key;
-    const std::string name = file_name(moment_ratio, choice);
-    std::optional<Json> point = cache.find(name, key);
-    if (!point) cache.keep(name, key, point.emplace(measure_point(options.scene, moment_ratio, choice)));
+        convergence::prepare_run({.scene = options.scene, .overrides = run.overrides}).cache_key;
+    std::optional<Json> point = cache.find(run.file, key);
+    if (!point) cache.keep(run.file, key, point.emplace(measure_point(options.scene, run)));
     scene["points"].push_back(*std::move(point));
-    progress.finished(label(moment_ratio, choice), 1.0);
+    progress.finished(run.label, 1.0);
   }
-  scene["exact"] = measure_exact(options.scene, moment_ratio);
+  scene["exact"] = measure_exact(options.scene, load.at("moment_ratio"));
   return scene;
 }
 
 Json measure_plane(const PlaneOptions& options) {
-  Json plane;
-  plane["quick"] = options.quick;
-  for (const auto& [name, text] : kQuantities)
-    plane["quantities"].push_back({{"name", name}, {"label", text}});
+  const Json design =
+      convergence::run_package_module("speed.plane", {{"what", "design"}, {"quick", options.quick}}).result;
+  Json plane{{"quick", options.quick}, {"quantities", design.at("quantities")}};
   plane["application_seconds"] = convergence::application_seconds(solver::read_scene(options.scene));
-  const std::vector<double> ratios = plane_moment_ratios(options.quick);
   std::size_t points = 0;
-  for (const double ratio : ratios) points += plane_design(ratio, options.quick).size();
+  for (const Json& load : design.at("loads")) points += load.at("runs").size();
   convergence::Progress progress(points, static_cast<double>(points));
-  for (const double ratio : ratios) {
-    plane["scenes"].push_back(measure_scene(options, ratio, plane_design(ratio, options.quick), progress));
-  }
-  judge_plane(plane);
+  for (const Json& load : design.at("loads"))
+    plane["scenes"].push_back(measure_load(options, load, progress));
   plane["provenance"] = convergence::provenance(1);
   return plane;
 }

@@ -13,13 +13,13 @@ BEGINNING = re.compile(
 RAISING = re.compile(r"\braise InputError\(")
 # In these files every text is a reason.
 WHOLE = ("convergence/gates/gate.cpp", "convergence/check/diagnosis.hpp", "convergence/check/verdict.cpp",
-         "convergence/oracle/oracle.cpp", "bench/compare/obstacles.cpp", "bench/timing/invalid_reason.cpp")
+         "convergence/oracle/oracle.cpp", "interfaces/python/slipstick/speed/obstacles.py", "bench/timing/invalid_reason.cpp")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"(?:\s*"((?:[^"\\\n]|\\.)*)")*')
 SHORTEST = 12  # characters; a shorter text could occur anywhere
 
 
 def without_comments(text):
-    return re.sub(r"(^|\s)(?://|# )[^\n]*", r"\1", text)
+    return re.sub(r"(^|\s)(?://|# )[^\n]*", r"\1", re.sub(r'""".*?"""', "", text, flags=re.DOTALL))
 
 
 def end_of(text, start):
@@ -44,14 +44,14 @@ def literals(text):
 
 def fragment(literal):
     """The longest part without a value, if it has several words."""
-    pieces = [piece.strip() for piece in re.split(r"\{[^{}]*\}", literal)]
+    pieces = [piece.strip(" :") for piece in re.split(r"\{[^{}]*\}", literal)]
     longest = max(pieces, key=len)
     return longest if len(longest) >= SHORTEST and " " in longest else ""
 
 
 def messages(root):
     """(place, fragment) of each message in the sources."""
-    tops = ("analytic", "bench", "convergence", "python", "reports", "solver")
+    tops = ("analytic", "bench", "convergence", "interfaces/python/slipstick/speed", "reports", "solver")
     files = [file for top in tops for ending in ("cpp", "hpp", "py") for file in (root / top).rglob("*." + ending)]
     for file in sorted(files) + [root / "main.cpp"]:
         path = file.relative_to(root)

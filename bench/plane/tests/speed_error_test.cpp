@@ -1,13 +1,13 @@
-// The plane's design, its points on small grids, its judgement of made points.
+// The plane's points on small grids.
 
 #include "bench/plane/speed_error.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <fstream>
-#include <map>
-#include <set>
+#include <nlohmann/json.hpp>
 
 #include "bench/timing/checked_solve.hpp"
 #include "convergence/programs/temporary_folder.hpp"
@@ -18,44 +18,28 @@ namespace {
 
 using namespace slipstick;
 using bench::Json;
-using bench::PlaneChoice;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path kPaper = fs::path(SLIPSTICK_SCENES) / "paper.toml";
 
-TEST(PlaneDesign, HoldsNoChoiceTwiceAndOnlyReadableOnes) {
-  for (const bool quick : {false, true}) {
-    for (const double ratio : bench::plane_moment_ratios(quick)) {
-      std::set<std::vector<std::string>> seen;
-      for (const PlaneChoice& choice : bench::plane_design(ratio, quick)) {
-        EXPECT_TRUE(seen.insert(bench::overrides(choice)).second) << choice.method << choice.cells;
-        EXPECT_NO_THROW(solver::read_scene(kPaper, bench::overrides(choice)));
-      }
-      EXPECT_GT(seen.size(), 20U);
-    }
-  }
-}
-
-TEST(PlaneDesign, TriesEachChoiceSomewhere) {
-  std::set<std::string> words;
-  for (const PlaneChoice& choice : bench::plane_design(0.9, false)) {
-    words.insert({choice.method, choice.op, choice.model, choice.pressure});
-  }
-  for (const char* word : {"coulomb", "paper", "projected_gradient", "dcfft", "direct", "dense", "auto",
-                           "full", "solved", "hertz", "hertz_averaged"}) {
-    EXPECT_TRUE(words.contains(word)) << word;
-  }
+/// The design's first point, on other cells.
+bench::PlaneRun run_on(int cells, double tolerance = 1e-8) {
+  return {
+      .choice = {{"cells", cells}},
+      .grids = 4,
+      .overrides = {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("solver.tolerance={}", tolerance),
+                    "solver.threads=1", "load.moment_ratio=0.9"},
+      .file = fmt::format("point-{}-{}", cells, tolerance),
+      .label = ""};
 }
 
 /// The error of a point is the root mean square of the errors of single solves.
 TEST(PlanePoint, HasTheErrorsOfItsGrids) {
-  const PlaneChoice choice{.cells = 24};
-  const Json point = bench::measure_point(kPaper, 0.9, choice);
+  const Json point = bench::measure_point(kPaper, run_on(24));
   ASSERT_EQ(point["errors"]["twist"].size(), 4U);
-  std::vector<std::string> overrides = bench::overrides(choice);
-  overrides.push_back("load.moment_ratio=0.9");
-  const Json alone = to_json(convergence::solve_scene(solver::read_scene(kPaper, overrides)).record);
+  const Json alone =
+      to_json(convergence::solve_scene(solver::read_scene(kPaper, run_on(24).overrides)).record);
   EXPECT_DOUBLE_EQ(point["errors"]["twist"][0], alone["twist_error"]);
   EXPECT_DOUBLE_EQ(point["errors"]["traction_l2"][0], alone["traction_error"]["l2"]);
   double sum = 0.0;
@@ -73,8 +57,7 @@ TEST(PlanePoint, IsNotTimedWhereItDoesNotConverge) {
   const convergence::TemporaryFolder folder;
   const fs::path scene = folder / "slow.toml";
   std::ofstream(scene) << convergence::read_text(kPaper) << "max_iterations = 1\n";
-  const PlaneChoice choice{.cells = 24};
-  const Json point = bench::measure_point(scene, 0.9, choice);
+  const Json point = bench::measure_point(scene, run_on(24));
   EXPECT_TRUE(point["seconds"].is_null());
   EXPECT_FALSE(point["not_timed"].get<std::string>().empty());
 }
@@ -102,74 +85,20 @@ TEST(InvalidReason, IsGivenForErrorsThatMeshAndToleranceDoNotExplain) {
 TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
-  const PlaneChoice choice{.cells = 16};
+  const auto load = [](const std::vector<bench::PlaneRun>& runs) {
+    Json design{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", Json::array()}};
+    for (const auto& [choice, grids, overrides, file, label] : runs) {
+      design["runs"].push_back(
+          {{"choice", choice}, {"grids", grids}, {"overrides", overrides}, {"file", file}, {"label", label}});
+    }
+    return design;
+  };
   convergence::Progress progress(3, 3.0);
-  const Json first = bench::measure_scene(options, 0.5, {choice}, progress);
-  PlaneChoice next = choice;
-  next.tolerance = 1e-4;
-  const Json both = bench::measure_scene(options, 0.5, {choice, next}, progress);
+  const Json first = bench::measure_load(options, load({run_on(16)}), progress);
+  const Json both = bench::measure_load(options, load({run_on(16), run_on(16, 1e-4)}), progress);
   ASSERT_EQ(both["points"].size(), 2U);
   EXPECT_EQ(both["points"][0], first["points"][0]);  // seconds and all: it was not measured again
   EXPECT_LE(both["exact"]["error"].get<double>(), 1e-13);
-}
-
-/// A made point whose times have an interval.
-Json made_point(const std::string& method, double cells, double error, double low, double median,
-                double high) {
-  Json point{{"method", method},     {"operator", "dcfft"}, {"model", "auto"},
-             {"pressure", "solved"}, {"cells", cells},      {"tolerance", 1e-8}};
-  point["seconds"] = {{"median", median}, {"low", low}, {"high", high}, {"repetitions", 5}};
-  point["error"] = {{"twist", error}};
-  return point;
-}
-
-Json judged_plane(const std::vector<Json>& points) {
-  Json plane;
-  plane["quantities"] = {{{"name", "twist"}, {"label", "twist"}}};
-  plane["scenes"].push_back({{"name", "made"}, {"points", points}});
-  plane["scenes"][0]["exact"]["seconds"] = {{"low", 0.3}, {"median", 0.4}, {"high", 0.7}};
-  bench::judge_plane(plane);
-  return plane;
-}
-
-TEST(PlaneJudgement, FindsEnvelopeTimesAndWhatIsNotTimed) {
-  Json wrong = made_point("paper", 256, 1e-6, 0.001, 0.001, 0.001);
-  wrong["seconds"] = nullptr;
-  wrong["not_timed"] = "twist error 0.06 above 0.001";
-  const Json plane = judged_plane({made_point("coulomb", 64, 2e-3, 1.0, 1.0, 1.0),
-                                   made_point("coulomb", 128, 5e-4, 4.0, 4.0, 4.0),
-                                   made_point("paper", 128, 5e-4, 8.0, 8.0, 8.0), wrong});
-  EXPECT_EQ(plane["scenes"][0]["envelope"]["twist"], Json({0, 1}));
-  const auto time_to = [&](double error, const std::string& method) {
-    for (const Json& row : plane["scenes"][0]["time_to"]) {
-      if (row["error"] == error && row["method"] == method) return row;
-    }
-    return Json();
-  };
-  EXPECT_EQ(time_to(1e-2, "coulomb")["seconds"], 1.0);
-  EXPECT_EQ(time_to(1e-2, "paper")["point"], 2);
-  EXPECT_EQ(time_to(1e-3, "any")["point"], 1);
-  EXPECT_TRUE(time_to(1e-4, "any")["seconds"].is_null());
-  EXPECT_THAT(time_to(1e-4, "any")["reason"].get<std::string>(), HasSubstr("0.0005"));
-  ASSERT_EQ(plane["not_timed"].size(), 1U);
-  EXPECT_EQ(plane["not_timed"][0]["choice"]["cells"], 256.0);
-  EXPECT_THAT(bench::times_text(plane), HasSubstr("1e-03      4 s  1e-04        -"));
-}
-
-// The choice with the least median differs from the choices with the least lower and upper ends.
-TEST(PlaneJudgement, GoesByMedians) {
-  const Json plane = judged_plane({made_point("coulomb", 64, 1e-3, 0.5, 2.0, 2.1),
-                                   made_point("paper", 64, 1e-3, 1.0, 1.5, 4.0),
-                                   made_point("projected_gradient", 64, 1e-3, 0.4, 1.8, 1.9)});
-  const Json& scene = plane["scenes"][0];
-  EXPECT_EQ(scene["envelope"]["twist"], Json({1}));
-  for (const Json& row : scene["time_to"]) {
-    if (row["error"] != 1e-2) continue;
-    const std::map<std::string, double> medians{
-        {"any", 1.5}, {"coulomb", 2.0}, {"paper", 1.5}, {"projected_gradient", 1.8}, {"exact", 0.4}};
-    EXPECT_EQ(row["seconds"], medians.at(row["method"])) << row;
-  }
-  EXPECT_EQ(scene["time_to"].size(), 4U * 5U);
 }
 
 }  // namespace

@@ -1,0 +1,183 @@
+"""Files of any program that uses Google Benchmark (--benchmark_format=json), of its versions 1.5 to 1.9."""
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import InputError
+
+ALLOWED = "what a Google Benchmark program writes with --benchmark_format=json"
+MAX_LEVELS = 200  # of nested brackets, as in all JSON that the program reads
+MAX_SHOWN = 200  # characters of a wrong value
+SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+KINDS = {str: "a string", bool: "true or false", int: "a whole number", float: "a number"}
+NOT_COUNTERS = {"family_index", "per_family_instance_index", "repetitions", "repetition_index", "threads", "iterations",
+                "real_time", "cpu_time"}
+
+
+@dataclass
+class Benchmark:
+    """One benchmark of a file: its repetitions in their order; none in files of aggregates only."""
+    name: str  # with its arguments, without the aggregate; the second of a name has " #2"
+    threads: int = 1  # that Google Benchmark ran it in
+    real: list[float] = field(default_factory=list)  # seconds of one iteration by the clock
+    cpu: list[float] = field(default_factory=list)  # of the processor
+    counters: dict[str, float] = field(default_factory=dict)  # of the last repetition; only finite values
+    error: str = ""  # why it failed, or which time is none
+    skipped: str = ""  # why it left itself out, which is no failure
+
+    def has_times(self) -> bool:
+        """Whether it has times that can be judged: repetitions, each of a valid time."""
+        return bool(self.real) and all(is_valid_time(time) for time in self.real)
+
+
+@dataclass
+class Timings:
+    """The benchmarks of a file in its order, and where, when and how they were run. Empty texts, zeros: the file gives none."""
+    file: str
+    benchmarks: list[Benchmark]
+    host_name: str = ""
+    cpus: int = 0
+    mhz: float = 0.0
+    caches: str = "[]"  # as JSON
+    load_average: float = 0.0  # over the minute before the program began
+    library_build_type: str = ""  # of Google Benchmark itself; Debian's says debug always
+    build_type: str = ""  # of the benchmarks: custom context "build_type"
+    session: str = ""  # custom context: files of one session were run in interleaved pairs on one machine
+
+    def by_name(self) -> dict[str, Benchmark]:
+        return {benchmark.name: benchmark for benchmark in self.benchmarks}
+
+
+def are_paired(base: Timings, now: Timings) -> bool:
+    """Whether both files are of one session."""
+    return bool(base.session) and base.session == now.session
+
+
+def is_valid_time(seconds: float) -> bool:
+    """Finite and above zero."""
+    return 0.0 < seconds < math.inf
+
+
+def parse_json(text: str, source: str) -> dict[str, Any]:
+    """The JSON that a program of Google Benchmark wrote, infinities and NaN, which it writes as they are, as null. Raises
+    InputError with the source for any other text."""
+    def finite(number: str) -> float:
+        if math.isinf(float(number)):
+            raise ValueError(f"{number[:MAX_SHOWN]} is too large")
+        return float(number)
+
+    words = re.compile(r'"(?:[^"\\]|\\.)*"?|-?[A-Za-z]+', re.DOTALL)
+    plain = words.sub(lambda found: found[0] if found[0][0] == '"' or found[0] in ("true", "false", "e", "E") else "null", text)
+    try:
+        tree = json.loads(plain, parse_float=finite, parse_int=lambda word: int(word) if len(word) < 19 else finite(word))
+        too_deep = levels(tree) > MAX_LEVELS
+    except RecursionError:
+        too_deep = True
+    except ValueError as error:
+        raise InputError(f"{source}: is not JSON ({error}); allowed: {ALLOWED}") from error
+    if too_deep:
+        raise InputError(f"{source}: brackets in brackets, more than {MAX_LEVELS} deep; allowed: {ALLOWED}")
+    if not (isinstance(tree, dict) and isinstance(tree.get("context"), dict) and isinstance(tree.get("benchmarks"), list)):
+        raise InputError(f"{source}: has no context and benchmarks; allowed: {ALLOWED}")
+    return tree
+
+
+def levels(tree: Any) -> int:
+    """The largest number of brackets in brackets."""
+    parts = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else None
+    return 0 if parts is None else 1 + max(map(levels, parts), default=0)
+
+
+class _Object:
+    """The values of one object of a file, which stands at `place`."""
+
+    def __init__(self, values: dict[str, Any], source: str, place: str) -> None:
+        self.values, self._source, self._place = values, source, place
+
+    def refuse(self, key: str, allowed: str) -> InputError:
+        shown = json.dumps(self.values[key])[:MAX_SHOWN] if key in self.values else "nothing"
+        return InputError(f"{self._source}: {self._place}.{key} = {shown}: allowed: {allowed}")
+
+    def get(self, key: str, otherwise: Any) -> Any:
+        """The value of a key, of the same type as `otherwise`, which stands for a missing one; NaN for null as a number."""
+        value = self.values.get(key, otherwise)
+        if isinstance(otherwise, float):
+            value = math.nan if value is None else value
+            right = isinstance(value, (int, float)) and not isinstance(value, bool)
+        else:
+            right = type(value) is type(otherwise)
+        if not right:
+            raise self.refuse(key, KINDS[type(otherwise)])
+        return value
+
+
+def _read_context(context: _Object) -> dict[str, Any]:
+    load = context.values.get("load_avg", [])
+    if not isinstance(load, list) or (load and (isinstance(load[0], bool) or not isinstance(load[0], (int, float)))):
+        raise context.refuse("load_avg", "a list of numbers")
+    read = {key: context.get(key, "") for key in ("host_name", "library_build_type", "build_type", "session")}
+    return {**read, "cpus": context.get("num_cpus", 0), "mhz": context.get("mhz_per_cpu", 0.0),
+            "caches": json.dumps(context.values.get("caches", []), separators=(",", ":")),
+            "load_average": load[0] if load else 0.0}
+
+
+def _add_repetition(benchmark: Benchmark, row: _Object) -> None:
+    if row.get("error_occurred", False):
+        benchmark.error = row.get("error_message", "") or "it says that an error occurred"
+        return
+    if row.get("skipped", False):
+        benchmark.skipped = row.get("skip_message", "") or "it says that it was skipped"
+        return
+    unit = row.get("time_unit", "ns")
+    if unit not in SECONDS:
+        raise row.refuse("time_unit", ", ".join(SECONDS))
+    if "real_time" not in row.values:
+        raise row.refuse("real_time", "a number")
+    real = SECONDS[unit] * row.get("real_time", math.nan)
+    benchmark.real.append(real)
+    benchmark.cpu.append(SECONDS[unit] * row.get("cpu_time", math.nan))
+    benchmark.counters = {key: float(value) for key, value in row.values.items()
+                          if key not in NOT_COUNTERS and isinstance(value, (int, float)) and not isinstance(value, bool)}
+    benchmark.threads = row.get("threads", 1)
+    if not is_valid_time(real) and not benchmark.error:
+        benchmark.error = f"the time of repetition {len(benchmark.real)} is {real:g}, which is none"
+
+
+def _read_benchmarks(rows: list[Any], source: str) -> list[Benchmark]:
+    """Puts rows together to benchmarks, in their order. Rows of complexity fits are of a family, not of a benchmark."""
+    found: dict[tuple[str, int, int], Benchmark] = {}  # two of one name are of two families
+    number: Counter[str] = Counter()
+    for i, values in enumerate(rows):
+        if not isinstance(values, dict):
+            raise InputError(f"{source}: benchmarks[{i}] is no object")
+        row = _Object(values, source, f"benchmarks[{i}]")
+        if row.get("aggregate_name", "") in ("BigO", "RMS"):
+            continue
+        name = row.get("run_name" if "run_name" in values else "name", "")
+        if not name:
+            raise row.refuse("name", "the name of a benchmark")
+        key = name, row.get("family_index", 0), row.get("per_family_instance_index", 0)
+        if key not in found:
+            number[name] += 1
+            found[key] = Benchmark(name if number[name] == 1 else f"{name} #{number[name]}")
+        if row.get("run_type", "") != "aggregate":
+            _add_repetition(found[key], row)
+    return list(found.values())
+
+
+def parse(text: str, source: str) -> Timings:
+    """The timings of a text; messages call it `source`. A row without a type is a repetition. Raises InputError with the key
+    for another text or one without benchmarks."""
+    return from_json(parse_json(text, source), source)
+
+
+def from_json(tree: dict[str, Any], source: str) -> Timings:
+    benchmarks = _read_benchmarks(tree["benchmarks"], source)
+    if not benchmarks:
+        raise InputError(f"{source}: holds no benchmark")
+    return Timings(source, benchmarks, **_read_context(_Object(tree["context"], source, "context")))
