@@ -9,8 +9,7 @@ from studies import cell_ticks_at
 from wording import plain, sci, seconds
 
 METHODS = {"coulomb": ("Newton’s method for Coulomb’s law", dict(color=style.GREEN, marker="s")),
-           "projected_gradient": ("projected gradients for the same", dict(color=style.PURPLE, marker="^")),
-           # Larger and hollow: on a circle its points lie on the others’.
+           # Larger and hollow: on a circle its points lie on the other’s.
            "paper": ("the paper’s method", dict(color=style.BLUE, marker="o", markersize=7.5, markerfacecolor="none"))}
 OTHER = dict(color=style.BLACK, marker="v")
 
@@ -43,8 +42,8 @@ def methods(report, data_dir):
         f"The sphere is at {LIMIT}{plain(number(spheres[0], 'moment_ratio'))}, {_across(spheres)[-1]:.0f} cells a side. "
         "All work of Newton’s method is counted, that on coarser grids by its share of the cells; its applications hardly "
         "grow with the mesh. The paper’s method keeps the direction that a cell’s traction had when it began to slip, so no "
-        "mesh reduces its error on an ellipse. Both of the others stop on the certificate at gap / energy = 10⁻⁸, the paper’s "
-        "method on Eq. (26).",
+        "mesh reduces its error on an ellipse. Newton’s method stops on the certificate at gap / energy = 10⁻⁸, the paper’s "
+        "on Eq. (26).",
         "Three log-log panels against cells across the grid, one line a method: applications of the operator, time, and on "
         "an ellipse the mean angle between slip and the reverse of traction.", figure,
         [*work, *((f"ellipse, slip direction, {name}", angle) for name, angle in turned.items())])

@@ -76,7 +76,6 @@ Prepared with_force(const Load& load) {
 /// Each method to the tolerance that scenes commonly ask of it: a gap, or the change of Eq. (26).
 void add_methods(Suite& suite, const Load& load) {
   constexpr double kPaperTolerance = 1e-5;
-  constexpr double kGap = 1e-8;
   const auto add = [&](const std::string& method, const Scene& scene) {
     suite.add("solve/" + method + load.name(), [scene] { return whole_solve(scene); });
   };
@@ -85,7 +84,6 @@ void add_methods(Suite& suite, const Load& load) {
   if (load.permille == 900 && load.cells < 1024) add("coulomb_full", load.scene());
   if (load.permille == 990 || load.cells > 256) return;
   add("paper", with_method(scene, Method::paper, kPaperTolerance));
-  add("projected_gradient", with_method(scene, Method::projected_gradient, kGap));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ using solver::Index;
 constexpr double kProfileRatios[] = {0.5, 0.9};
 constexpr double kMethodsRatio = 0.9;  ///< load for the comparison of methods, as in the scene of the ellipse
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
-constexpr const char* kMethods[] = {"coulomb", "projected_gradient", "paper"};
+constexpr const char* kMethods[] = {"coulomb", "paper"};
 
 /// Radial profile: exact, Eq. (1) as printed, and both over radii that crowd at the stick edge.
 Json exact_profile(const analytic::TorsionState& state) {
@@ -209,12 +209,8 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
   }
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return to_json(
-      run_hard_cases(shown,
-                     {.variants = false,
-                      .finer_meshes = false,
-                      .methods = {read_beside_method("projected_gradient"), read_beside_method("paper")}},
-                     pool));
+  return to_json(run_hard_cases(
+      shown, {.variants = false, .finer_meshes = false, .methods = {read_beside_method("paper")}}, pool));
 }
 
 /// A field of check/fields/, at 0.9 of the limit moment. twist: rad, as the program reports it.

@@ -110,9 +110,8 @@ void require_reachable(const Scene& scene, const AccuracyTarget& target) {
                      fmt::format("the grid is that of {}: --accuracy cannot choose it", owner));
   }
   if (scene.solver.method == solver::Method::paper && scene.solver.model != solver::ModelChoice::exact) {
-    throw InputError(
-        scene.source.string(), "solver.method", "\"paper\"",
-        "coulomb, projected_gradient with --accuracy (the paper's stopping test bounds no error)");
+    throw InputError(scene.source.string(), "solver.method", "\"paper\"",
+                     "coulomb with --accuracy (the paper's stopping test bounds no error)");
   }
 }
 

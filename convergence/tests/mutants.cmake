@@ -59,7 +59,7 @@ mutant(tolerance_times_ten
   FILE solver/scene/scene.cpp
   FIND [[scene.solver.tolerance = reader.number_or(]]
   REPLACE [[scene.solver.tolerance = 10.0 * reader.number_or(]]
-  GATES gradient-64-gap)
+  GATES paper-0.9-256-gap)
 
 # Without the factor 2/pi in the stick area.
 mutant(equation_1_as_printed

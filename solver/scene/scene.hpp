@@ -46,7 +46,7 @@ enum class PressureModel { solved, hertz, hertz_averaged, file };
 enum class Coupling { automatic, none, pressure, full };
 
 /// The method that finds the tractions.
-enum class Method { coulomb, projected_gradient, paper };
+enum class Method { coulomb, paper };
 
 /// The reduction of the model: as far as symmetry and the contact's size allow; none; no grid, where the
 /// scene has an exact answer.

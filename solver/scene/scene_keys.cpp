@@ -152,8 +152,7 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        "Lengths of the grid's sides; not with a height map, required with a pressure from a file. The "
        "contact expected on a bonded layer is computed with the softer of layer and base."},
       {"solver.method", kWord, "", word_of(kMethods, scene.solver.method), one_of(kMethods),
-       "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
-       "published."},
+       "Newton's method on the convex program; the paper's algorithm as published."},
       {"solver.program", KeyType::file, "", "\"\"", kAny,
        "Another program that finds pressure and tractions instead of the method: the TOML file with its "
        "command line. It runs only with --allow-programs, or if the command line names it. Empty: none."},

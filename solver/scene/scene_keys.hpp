@@ -29,9 +29,7 @@ inline const Words<Coupling> kCouplings{{"auto", Coupling::automatic},
                                         {"full", Coupling::full}};
 inline const Words<OperatorKind> kOperators{
     {"dcfft", OperatorKind::dcfft}, {"direct", OperatorKind::direct}, {"dense", OperatorKind::dense}};
-inline const Words<Method> kMethods{{"coulomb", Method::coulomb},
-                                    {"projected_gradient", Method::projected_gradient},
-                                    {"paper", Method::paper}};
+inline const Words<Method> kMethods{{"coulomb", Method::coulomb}, {"paper", Method::paper}};
 inline const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
 inline const Words<CellTraction> kCellTractions{{"constant", CellTraction::constant},

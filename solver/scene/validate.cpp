@@ -143,7 +143,7 @@ class Validation {
     for (const double extent : *scene_.grid.extent) require("grid.extent", extent, kPositive);
   }
 
-  /// The paper's method and projected gradients solve only torsion about the origin.
+  /// The paper's method solves only torsion about the origin.
   void check_method() const {
     if (scene_.solver.method == Method::coulomb) return;
     const Step& step = scene_.steps.front();

@@ -7,7 +7,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/paper_method.hpp"
-#include "solver/contact/projected_gradient.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
@@ -186,17 +185,10 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
                                     }});
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
-  TangentialSolution solution =
-      scene.solver.method == Method::paper
-          ? solve_by_paper_method(*op, problem,
-                                  {.tolerance = scene.solver.tolerance,
-                                   .max_iterations = scene.solver.max_iterations,
-                                   .progress = progress})
-          : solve_by_projected_gradient(*op, problem,
-                                        {.tolerance = scene.solver.tolerance,
-                                         .max_iterations = scene.solver.max_iterations,
-                                         .start = {},
-                                         .progress = progress});
+  TangentialSolution solution = solve_by_paper_method(*op, problem,
+                                                      {.tolerance = scene.solver.tolerance,
+                                                       .max_iterations = scene.solver.max_iterations,
+                                                       .progress = progress});
   solution.grids = {
       {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
   return solution;

@@ -10,7 +10,7 @@
 
 #include "convergence/check/tests/checked_field.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/contact/projected_gradient.hpp"
+#include "docs/extend/examples/method.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
@@ -73,7 +73,8 @@ GivenContact computed_with(const solver::Scene& scene, const CrossKernel& cross,
   solver::ElasticPair pair = model.pair;
   pair.poisson_compliance *= poisson;
   OtherKernel op(model.grid, solver::HalfSpaces(pair), cross, exchanged);
-  const auto solution = solve_by_projected_gradient(op, load_step(scene, model, load, pressure, {}).problem);
+  const auto solution =
+      example::solve_by_plain_gradient(op, load_step(scene, model, load, pressure, {}).problem, 1e-8, 20000);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
   return made_contact(model, pressure, solution.traction);
 }

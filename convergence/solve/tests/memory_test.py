@@ -18,8 +18,8 @@ MOST = 1.3  # largest ratio of the prediction to the memory used
 FULL = "solver.model=full"
 # Scenes that solve different parts of the grid, with other methods, histories and full coupling.
 CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=hertz"),
-         ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=projected_gradient"),
-         ("paper", 160, FULL, "solver.method=projected_gradient"), ("paper", 288, FULL, "solver.threads=4"),
+         ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=paper"),
+         ("paper", 288, FULL, "solver.threads=4"),
          ("paper", 288, FULL, "contact.friction=0", "load.moment_ratio=0"),
          ("rough_sphere", 512, "contact.friction=0", "load.moment_ratio=0"),
          ("paper", 24, FULL, "solver.operator=dense"), ("paper", 36, FULL, "solver.operator=dense"),

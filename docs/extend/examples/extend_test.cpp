@@ -12,7 +12,6 @@
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/normal_contact.hpp"
 #include "solver/contact/paper_method.hpp"
-#include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/law/winkler_layer.hpp"
 
@@ -75,7 +74,6 @@ TEST(ExampleMethod, FindsTheExactMoment) {
 std::vector<solver::TangentialSolution> by_every_method(const Sphere& sphere, double compliance) {
   const auto op = sphere.op(compliance);
   return {solve_by_plain_gradient(*op, sphere.problem, 1e-8, 5000),
-          solver::solve_by_projected_gradient(*op, sphere.problem),
           solver::solve_by_paper_method(*op, sphere.problem),
           solver::solve_by_coulomb_method({.law = Sphere::law(compliance)}, sphere.grid, sphere.problem)};
 }

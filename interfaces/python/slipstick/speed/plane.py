@@ -46,18 +46,16 @@ def choices(moment_ratio: float, quick: bool) -> list[Point]:
         add((1024,), (1e-6,))
     if moment_ratio != MAIN_RATIO:
         add((32, 64, 128), (1e-3, 1e-4, 1e-5, 1e-6), method="paper")
-        add((32, 64, 128), (1e-2, 1e-4, 1e-6), method="projected_gradient")
         return design
     if not quick:
         add((16, 24, 32, 48, 64, 96, 128), (1e-5, 1e-10))
         add((512,), (1e-3, 1e-8))
-    for method in ("paper", "projected_gradient"):
-        if quick:
-            add((16, 32, 64, 128), (1e-2, 1e-4, 1e-6), method=method)
-            continue
-        add((16, 32, 64, 128), (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8), method=method)
-        add((256,), (1e-3, 1e-4, 1e-5, 1e-6), method=method)
-        add((512,), (1e-4,), method=method)
+    if quick:
+        add((16, 32, 64, 128), (1e-2, 1e-4, 1e-6), method="paper")
+    else:
+        add((16, 32, 64, 128), (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8), method="paper")
+        add((256,), (1e-3, 1e-4, 1e-5, 1e-6), method="paper")
+        add((512,), (1e-4,), method="paper")
     for words in ({"model": "full"}, {"pressure": "hertz"}, {"pressure": "hertz_averaged"}):
         add((32, 64, 128) if quick else (16, 32, 64, 128, 256), ONE_AT_A_TIME, **words)
         if not quick:
