@@ -15,6 +15,9 @@ namespace {
 using analytic::Profile;
 using analytic::TorsionState;
 
+/// Relative: smaller errors are below rounding.
+constexpr double kLeastLossError = 1e-14;
+
 using StateAt = TorsionState (*)(double, const Profile&);
 /// Numbers of enum slipstick_quantity: quantities that can be given, and members of a state.
 constexpr std::array<StateAt, 5> kStateAt{analytic::from_moment_ratio, analytic::from_moment_deficit,
@@ -79,13 +82,19 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
-/// Calls the work with the profile of this name.
+/// Calls the work with the profile of this name. That of the last call is kept, since many calls in a row
+/// have the same one; a file may change in between.
 template <class Work>
 int with_profile(const char* name, const Work& work) noexcept {
   return guarded([&] {
     require(name, "profile");
-    const analytic::NamedProfile named = analytic::find_profile(name);
-    work(*named.profile);
+    thread_local std::string last_name;
+    thread_local analytic::NamedProfile last;
+    if (!last.profile || last_name != name || last.table) {
+      last = analytic::find_profile(name);
+      last_name = name;
+    }
+    work(*last.profile);
   });
 }
 
@@ -108,6 +117,20 @@ int slipstick_exact_states(const char* profile, int given, size_t n, const doubl
     const c::StateAt state_at = c::state_by(given);
     c::for_each(c::array(values, n, "values"), "values", c::array(states, n, "states"),
                 [&](double value) { return c::in_c(state_at(value, shape)); });
+  });
+}
+
+int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values,
+                                double relative_error, double* results) {
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    const c::StateAt state_at = c::state_by(given);
+    if (!(relative_error >= c::kLeastLossError && relative_error < 1.0)) {
+      throw std::invalid_argument(
+          fmt::format("relative_error = {}; allowed: {} to below 1", relative_error, c::kLeastLossError));
+    }
+    c::for_each(c::array(values, n, "values"), "values", c::array(results, n, "results"), [&](double value) {
+      return analytic::energy_lost_per_cycle(state_at(value, shape), shape, relative_error);
+    });
   });
 }
 

@@ -64,6 +64,13 @@ static void test_states(const char* profile) {
       slipstick_exact(profile, SLIPSTICK_MOMENT_RATIO, 3, ratios, SLIPSTICK_TWIST, ratios) == SLIPSTICK_OK &&
           ratios[2] == states[2].twist,
       "results may replace the values");
+  double lost[3];
+  check(slipstick_exact_energy_lost(profile, SLIPSTICK_TWIST, 3, ratios, 1e-3, lost) == SLIPSTICK_OK &&
+            near(lost[2], one(profile, SLIPSTICK_TWIST, ratios[2], SLIPSTICK_ENERGY_LOST), 1e-3),
+        "the energy lost to a given error");
+  check(slipstick_exact_energy_lost(profile, SLIPSTICK_TWIST, 3, ratios, 0, lost) == SLIPSTICK_BAD_INPUT &&
+            says("relative_error"),
+        "no error at all");
 }
 
 /* Outside the stick area the traction is mu p. A full reversal mirrors the state, and a cycle closes its

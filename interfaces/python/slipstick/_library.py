@@ -44,6 +44,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "message": (c_char_p, []),
     "exact": (c_int, [c_char_p, c_int, c_size_t, c_void_p, c_int, c_void_p]),
     "exact_states": (c_int, [c_char_p, c_int, c_size_t, c_void_p, c_void_p]),
+    "exact_energy_lost": (c_int, [c_char_p, c_int, c_size_t, c_void_p, c_double, c_void_p]),
     "exact_traction": (c_int, [c_char_p, c_int, c_double, c_size_t, c_void_p, c_void_p]),
     "exact_pressure": (c_int, [c_char_p, c_size_t, c_void_p, c_void_p]),
     "exact_profile": (c_int, [c_char_p, POINTER(Profile)]),

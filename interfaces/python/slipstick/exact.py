@@ -29,7 +29,7 @@ from .errors import InputError
 
 Values = Optional[npt.ArrayLike]
 _GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")
-_WANTED = (*_GIVEN, "moment", "tangent_stiffness", "energy_lost")
+_WANTED = (*_GIVEN, "moment", "tangent_stiffness")
 
 
 def _named(names: dict[str, Values]) -> tuple[int, npt.ArrayLike]:
@@ -111,8 +111,9 @@ def tangent_stiffness(moment_ratio: Values = None, *, moment_deficit: Values = N
 
 
 def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
-                stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
-    """Energy lost in a cycle between M and -M, over (mu W)^2/(G a).
+                stick_complement: Values = None, twist: Values = None, profile: str = "hertz", relative_error: float = 1e-14) -> Any:
+    """Energy lost in a cycle between M and -M, over (mu W)^2/(G a). A larger `relative_error` takes a tenth of the time for profiles
+    without a closed form.
 
     For small moments it is (3/16) M^3 for a sphere:
 
@@ -120,9 +121,13 @@ def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, s
     >>> round(energy_lost(m) / (3 / 16 * moment(moment_ratio=m)**3), 3)
     1.0
     """
-    return _find("energy_lost", profile, {
-        "moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-        "stick_complement": stick_complement, "twist": twist})
+    given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                            "stick_complement": stick_complement, "twist": twist})
+    array = _library.doubles(values)
+    results = np.empty_like(array)
+    _library.checked(_library.function("exact_energy_lost")(
+        _library.encoded(profile), given, array.size, _library.address(array), relative_error, _library.address(results)))
+    return results if results.ndim else float(results)
 
 
 def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
