@@ -84,7 +84,7 @@ endif()
 function(slipstick_find_python result)
   foreach(candidate "${SLIPSTICK_PYTHON}" /usr/bin/python3 python3)
     if(candidate)
-      execute_process(COMMAND "${candidate}" -I -c "import numpy, matplotlib, jinja2, h5py"
+      execute_process(COMMAND "${candidate}" -I -c "import numpy, scipy, matplotlib, jinja2, h5py"
         RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
       if(status EQUAL 0)
         set(${result} "${candidate}" PARENT_SCOPE)
@@ -94,13 +94,13 @@ function(slipstick_find_python result)
   endforeach()
   set(${result} "" PARENT_SCOPE)
 endfunction()
-set(SLIPSTICK_PYTHON "" CACHE STRING "Python 3 with numpy, matplotlib, jinja2 and h5py")
+set(SLIPSTICK_PYTHON "" CACHE STRING "Python 3 with numpy, scipy, matplotlib, jinja2 and h5py")
 slipstick_find_python(found_python)
 if(found_python)
-  set(SLIPSTICK_PYTHON "${found_python}" CACHE STRING "Python 3 with numpy, matplotlib, jinja2 and h5py" FORCE)
+  set(SLIPSTICK_PYTHON "${found_python}" CACHE STRING "Python 3 with numpy, scipy, matplotlib, jinja2 and h5py" FORCE)
 else()
   slipstick_not_built("the page, all figures and their tests"
-    "no python3 can import numpy, matplotlib, jinja2 and h5py: install python3-numpy python3-matplotlib python3-jinja2 \
+    "no python3 can import numpy, scipy, matplotlib, jinja2 and h5py: install python3-numpy python3-scipy python3-matplotlib python3-jinja2 \
 python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
 endif()
 

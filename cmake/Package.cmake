@@ -37,7 +37,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_folder}/triggers ${package_folder}/shlibs)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, python3-matplotlib, python3-jinja2, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, python3-scipy, python3-matplotlib, python3-jinja2, python3-h5py")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev, libfftw3-dev, libfmt-dev, libgsl-dev, libtomlplusplus-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "verification of elastic torsional contacts with slip and stick")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Solves the elastic torsional contact with slip and stick on a grid, and

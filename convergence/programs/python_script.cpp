@@ -27,8 +27,8 @@ void run_report_script(const std::string& script, const std::vector<std::string>
   const std::string python = SLIPSTICK_PYTHON;
   if (python.empty()) {
     throw std::runtime_error(fmt::format(
-        "{}, but no python3 with numpy, matplotlib, jinja2 and h5py was found when this program "
-        "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-matplotlib "
+        "{}, but no python3 with numpy, scipy, matplotlib, jinja2 and h5py was found when this program "
+        "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-scipy python3-matplotlib "
         "python3-jinja2 python3-h5py; elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
         done));
   }

@@ -8,12 +8,13 @@
 #include <stdexcept>
 
 #include "analytic/named_profile.hpp"
-#include "convergence/laws/contact_law.hpp"
+#include "convergence/oracle/law_contact.hpp"
 #include "convergence/programs/output_options.hpp"
+#include "convergence/programs/package_module.hpp"
 #include "convergence/results/output.hpp"
+#include "convergence/results/provenance.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "interfaces/laws/law_files.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::laws {
@@ -27,7 +28,11 @@ struct LawRequest {
   std::vector<std::string> overrides;
   std::string profile = "hertz";
   std::string prefix = "slipstick";
-  LawOptions options;
+  double error = 1e-6;          ///< relative, of the polynomials
+  double table_error = 1e-4;    ///< over the limit, of the table
+  double element_error = 1e-2;  ///< over the limit, of the elements on first loading
+  std::optional<int> elements;  ///< a number of elements, instead of their error
+  int limit_loads = 65;
   std::vector<std::string> files;
 };
 
@@ -44,35 +49,56 @@ LawContact contact_of(const CLI::App& command, const LawRequest& request) {
   return law_contact(scene);
 }
 
-int run_law(const CLI::App& command, const LawRequest& request, std::ostream& text, Json& result) {
-  for (const std::string& file : request.files) require_output("--write", file);
-  LawContact contact = contact_of(command, request);
-  contact.prefix = request.prefix;
-  const ContactLaw law = make_contact_law(contact, request.options);
-  std::vector<std::string> texts;
-  for (const std::string& file : request.files) texts.push_back(law_file(law, file));
-  result = law_json(law);
-  text << law_text(law);
-  for (std::size_t i = 0; i < texts.size(); ++i) write_option_file("--write", request.files[i], texts[i]);
-  return 0;
+/// Arguments of slipstick.laws.Law, and the files.
+Json arguments(const LawContact& contact, const LawRequest& request) {
+  Json json{{"name", contact.name},
+            {"profile", request.scene.empty() ? request.profile : contact.profile->name()},
+            {"profile_name", contact.profile->name()},
+            {"prefix", request.prefix},
+            {"error", request.error},
+            {"table_error", request.table_error},
+            {"element_error", request.element_error},
+            {"limit_loads", request.limit_loads},
+            {"files", request.files}};
+  if (request.elements) json["elements"] = *request.elements;
+  if (contact.units) {
+    json["units"] = {{"friction", contact.units->friction},
+                     {"normal_load", contact.units->normal_load},
+                     {"contact_radius", contact.units->contact_radius},
+                     {"shear_modulus", contact.units->shear_modulus}};
+    if (contact.units->sphere_radius) json["units"]["sphere_radius"] = *contact.units->sphere_radius;
+  }
+  return json;
 }
 
-void add_accuracy_options(CLI::App& command, LawOptions& options) {
+int run_law(const CLI::App& command, const LawRequest& request, std::ostream& text, Json& result) {
+  for (const std::string& file : request.files) require_output("--write", file);
+  ModuleAnswer answer = run_package_module("laws", arguments(contact_of(command, request), request));
+  result = std::move(answer.result);
+  result["provenance"] = provenance(1);
+  text << answer.text;
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    write_option_file("--write", request.files[i], answer.rest["files"][i].get<std::string>());
+  }
+  return answer.exit_code;
+}
+
+void add_accuracy_options(CLI::App& command, LawRequest& request) {
   command
-      .add_option("--error", options.error,
+      .add_option("--error", request.error,
                   "relative, of moment, rotation and energy lost in .h, .py and JSON; 1e-11 to 0.01")
       ->capture_default_str();
-  command.add_option("--table-error", options.table_error, "over the limit, of the table; 1e-7 to 0.5")
+  command.add_option("--table-error", request.table_error, "over the limit, of the table; 1e-7 to 0.5")
       ->capture_default_str();
   CLI::Option* const error =
-      command.add_option("--element-error", options.element_error,
+      command.add_option("--element-error", request.element_error,
                          "over the limit, of the elements in parallel on first loading; 1e-5 to 0.5");
   error->capture_default_str();
   command
-      .add_option("--elements", options.elements, "number of elements, 1 to 200, whose error is the least")
+      .add_option("--elements", request.elements, "number of elements, 1 to 200, whose error is the least")
       ->excludes(error);
   command
-      .add_option("--limit-loads", options.limit_loads,
+      .add_option("--limit-loads", request.limit_loads,
                   "points of the limit surface, from pure moment to pure force; at least 3")
       ->check(CLI::Range(3, 10000))
       ->capture_default_str();
@@ -111,7 +137,7 @@ convergence::RunCommand add_law_command(CLI::App& app) {
           },
           "NAME"))
       ->capture_default_str();
-  add_accuracy_options(*command, request->options);
+  add_accuracy_options(*command, *request);
   command->footer(
       "Examples: slipstick law convergence/scenes/paper.toml --write law.h --write law.inp --json law.json\n"
       "          slipstick law --profile cone --elements 8\n"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "convergence/laws/contact_law.hpp"
+#include "convergence/oracle/law_contact.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
 

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "analytic/approximations.hpp"
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/self_similar_indenter.hpp"
-#include "convergence/laws/contact_law.hpp"
+#include "convergence/laws/twist_law.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
+#include "convergence/oracle/law_contact.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -98,7 +100,7 @@ LoopContact torsion_contact(const solver::Scene& scene, double normal_load) {
           .stiffness_exponent = 3.0 * exponent,
           .one_body_upper = pair / compliance(scene.upper),
           .one_body_lower = pair / compliance(scene.lower),
-          .uniform_pressure_limit = 1.0 + uniform_pressure_cap_error(*contact.profile),
+          .uniform_pressure_limit = analytic::dem_moment_limit() / law.moment_limit,
           .sphere_limit = is_sphere ? std::optional(law.moment_limit) : std::nullopt,
           .other_profiles = others,
           .law_error = law.error,

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "analytic/layered/layered_pair.hpp"
-#include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/law_contact.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/elasticity/law/layer_symbol.hpp"
 #include "solver/input/input_error.hpp"

@@ -2,18 +2,24 @@
 with the exact law at 10,000 points. Without a C compiler (an empty name) the header is left out."""
 
 import csv
-import importlib.util
 import json
 import random
 import re
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 import xml.etree.ElementTree
 from bisect import bisect_left
 from math import cos, pi, sin
 from pathlib import Path
+
+import numpy as np
+from slipstick import exact
+from slipstick.law_fits import Curve, ParallelElements
+from slipstick.laws import Law as PackageLaw
+from slipstick.laws import Units
 
 PROGRAM, SCENES, COMPILER = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]
 POINTS = 5000  # on each of two branches
@@ -42,10 +48,9 @@ def interpolated(x, y, at):
     return y[k - 1] + part * (y[k] - y[k - 1])
 
 
-def module(path):
-    spec = importlib.util.spec_from_file_location("law", path)
-    law = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(law)
+def module(text):
+    law = types.ModuleType("law")
+    exec(text, law.__dict__)
     return law
 
 
@@ -74,15 +79,15 @@ class Spline:
                 + ((a**3 - a) * self.second[k - 1] + (b**3 - b) * self.second[k]) * h**2 / 6)
 
 
-def lammps_rows(path):
+def lammps_rows(text):
     """As its tabulated styles read a file: comments, keyword, N and FP, a blank line, index x energy force."""
-    lines = path.read_text().splitlines()
+    lines = text.splitlines()
     at = next(k for k, line in enumerate(lines) if line.endswith("_TWIST"))
     assert all(not line or line.startswith("#") for line in lines[:at]) and lines[at + 2] == ""
     count, first, last = re.fullmatch(r"N (\d+) FP (\S+) (\S+)", lines[at + 1]).groups()
     rows = [tuple(map(float, line.split())) for line in lines[at + 3:]]
     assert [row[0] for row in rows] == list(range(1, int(count) + 1))
-    assert f"linear\n# {count}, or spline {count}" in path.read_text()
+    assert f"linear\n# {count}, or spline {count}" in text
     return rows, float(first), float(last)
 
 
@@ -126,7 +131,7 @@ class Law(unittest.TestCase):
             self.assertLessEqual(abs(energy_lost(10.0**-power * self.limit) / lost - 1), 1e-6 + 3 * 10.0**-power)
 
     def test_python(self):
-        law = module(self.files["py"])
+        law = module(self.files["py"].read_text())
         self.assert_law(law.moment, law.rotation, law.branch, law.energy_lost)
         self.assertEqual(law.moment(1.0), law.LIMIT)
         self.assertAlmostEqual(law.LIMIT / self.limit, 1, 14)
@@ -169,7 +174,7 @@ class Law(unittest.TestCase):
         self.assert_table(self.law["table"]["rotation"], self.law["table"]["moment"])
 
     def test_lammps(self):
-        rows, *_ = lammps_rows(self.files["table"])
+        rows, *_ = lammps_rows(self.files["table"].read_text())
         rotations, moments = [row[1] for row in rows], [-row[3] for row in rows]
         self.assert_table(rotations, moments)
         energy = 0.0
@@ -243,51 +248,40 @@ class Law(unittest.TestCase):
 
 
 class Profiles(unittest.TestCase):
-    """Laws without a scene, against polynomials a thousand times as exact."""
-
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(self.temporary.cleanup)
-        self.folder = Path(self.temporary.name)
-
-    def law_of(self, profile, *words):
-        law = json.loads(program("law", "--profile", profile, "--error", "1e-9", "--json", "-", *words,
-                                 "--write", self.folder / "law.py", "--write", self.folder / "law.table"))
-        return law, module(self.folder / "law.py")
+    """Laws without a scene, against the exact one and polynomials that are far more exact."""
 
     def test_lammps_reads_its_table(self):
         """It draws a cubic through a table's points, takes a given number of its values, and then draws lines or cubics."""
         for profile in ("hertz", "cone", "flat_punch", "power:2", "rounded_punch:0.5"):
-            _, exact = self.law_of(profile)
-            rows, first, last = lammps_rows(self.folder / "law.table")
+            law = PackageLaw(profile, error=0.01, limit_loads=3)
+            rows, first, last = lammps_rows(law.file("law.table"))
             x, y = [row[1] for row in rows], [row[3] for row in rows]
-            self.assertAlmostEqual(first, -exact.STIFFNESS, 12)
+            self.assertAlmostEqual(first, -law.stiffness, 12)
             spline = Spline(x, y, first, last)
             values = [spline(x[-1] * k / (len(x) - 1)) for k in range(len(x))]
-            for k in range(2000):
-                at = x[-1] * (k + 0.5) / 2000
+            places = [x[-1] * (k + 0.5) / 2000 for k in range(2000)]
+            for at, moment in zip(places, exact.moment(places, profile=profile)):
                 for read in (spline(at), interpolated(x, values, at)):
-                    self.assertLessEqual(abs(-read - exact.moment(at)), 1.0001e-4 * exact.LIMIT, profile)
+                    self.assertLessEqual(abs(-read - moment), 1.0001e-4 * law.limit, profile)
 
     def test_losses_are_exact_where_little_is_lost(self):
         for profile in ("hertz", "cone", "flat_punch", "power:2"):
-            law, _ = self.law_of(profile)
-            program("law", "--profile", profile, "--error", "0.01", "--write", self.folder / "rough.py")
-            rough, exact = module(self.folder / "rough.py"), module(self.folder / "law.py")
-            least = law["full_stick"]
+            law = PackageLaw(profile, error=1e-9, limit_loads=3)
+            rough = module(PackageLaw(profile, error=0.01, limit_loads=3).file("law.py"))
+            close, least = module(law.file("law.py")), law.curve.full_stick
             for k in range(120):
-                m = exact.LIMIT * (least + (1 - least) * 10**(-k / 10) * 0.99)
+                m = close.LIMIT * (least + (1 - least) * 10**(-k / 10) * 0.99)
                 self.assertGreater(rough.energy_lost(m), 0)
-                self.assertLessEqual(abs(rough.energy_lost(m) / exact.energy_lost(m) - 1), 0.0101, (profile, m))
+                self.assertLessEqual(abs(rough.energy_lost(m) / close.energy_lost(m) - 1), 0.0101, (profile, m))
             words = ("exact", "--profile", profile, "--history", "0.95,-0.95,0.95", "--points", 1, "--json", "-")
             first, _, last = json.loads(program(*words))["history"]
-            self.assertAlmostEqual(exact.energy_lost(0.95 * exact.LIMIT) / (last["dissipated"] - first["dissipated"]), 1, 8)
-            self.assertAlmostEqual(exact.rotation(0.95 * exact.LIMIT) / first["twist"], 1, 8)
+            self.assertAlmostEqual(close.energy_lost(0.95 * close.LIMIT) / (last["dissipated"] - first["dissipated"]), 1, 8)
+            self.assertAlmostEqual(close.rotation(0.95 * close.LIMIT) / first["twist"], 1, 8)
 
     def test_gap_of_the_limit_surface_is_that_of_chords_and_tangents(self):
         """Along rays from the origin: where each leaves the polygon of the loads, and that of their tangents."""
         for profile in ("hertz", "cone", "flat_punch"):
-            surface = self.law_of(profile, "--limit-loads", 9)[0]["limit_surface"]
+            surface = PackageLaw(profile, limit_loads=9).result()["limit_surface"]
             loads = [(load["force"], load["moment"]) for load in surface["loads"]]
             normals = [(load["centre"], 1) if load["centre"] is not None else (1, 0) for load in surface["loads"]]
             gap = 0
@@ -303,7 +297,7 @@ class Histories(unittest.TestCase):
     """Elements in parallel after any rotations, against Masing's rule."""
 
     @staticmethod
-    def masing(first_loading, path):
+    def masing(profile, path):
         open_ends = []
         for t in path:
             if open_ends and abs(t) >= abs(open_ends[0]):
@@ -312,11 +306,11 @@ class Histories(unittest.TestCase):
                 del open_ends[-2:]
             open_ends.append(t)
         ranges = [0.5 * (to - at) for at, to in zip(open_ends, open_ends[1:])]
-        return first_loading(open_ends[0]) + sum(2 * first_loading(half) for half in ranges)
+        moments = np.copysign(exact.moment(np.abs([open_ends[0], *ranges]), profile=profile), [open_ends[0], *ranges])
+        return 2 * moments.sum() - moments[0]
 
     @staticmethod
-    def sliders(law, path):
-        elements = list(zip(law["elements"]["stiffness"], law["elements"]["slip_moment"]))
+    def sliders(elements, path):
         carried, at = [0.0] * len(elements), 0.0
         for t in path:
             carried = [min(max(was + k * (t - at), -slip), slip) for was, (k, slip) in zip(carried, elements)]
@@ -325,37 +319,37 @@ class Histories(unittest.TestCase):
 
     def test_stay_within_their_bound_and_reach_it(self):
         draw = random.Random(34)
-        with tempfile.TemporaryDirectory() as folder:
-            for number in range(20):
-                profile = draw.choice(("hertz", "cone", "flat_punch", "power:2", "power:7"))
-                law = json.loads(program("law", "--profile", profile, "--elements", draw.choice((1, 2, 4, 8, 16)), "--error",
-                                         "1e-9", "--json", "-", "--write", f"{folder}/law{number}.py"))
-                exact = module(f"{folder}/law{number}.py")
-                bound, last = law["elements"]["history_error"], 1.2 * exact.rotation((1 - 1e-4) * exact.LIMIT)
+        for _ in range(20):
+            profile = draw.choice(("hertz", "cone", "flat_punch", "power:2", "power:7"))
+            curve = Curve(profile)
+            found = ParallelElements(curve, 0, draw.choice((1, 2, 4, 8, 16)))
+            elements = (curve.limit * found.each).tolist()
+            bound, last = found.history_error, 1.2 * exact.twist(moment_deficit=1e-4, profile=profile)
 
-                def error(path):
-                    return abs(self.sliders(law, path) - self.masing(exact.moment, path)) / exact.LIMIT
+            def error(path):
+                return abs(self.sliders(elements, path) - self.masing(profile, path)) / curve.limit
 
-                for _ in range(50):
-                    path = [draw.choice((-1, 1)) * last * draw.random()]
-                    for _ in range(draw.randrange(1, 12)):
-                        towards = -1 if len(path) == 1 and path[0] > 0 or len(path) > 1 and path[-1] > path[-2] else 1
-                        path.append(path[-1] + towards * 2 * last * draw.random()**draw.choice((1, 3)))
-                    self.assertLessEqual(error(path), bound * (1 + 1e-6), (profile, path))
-                # Reversals at the extremes of the error on first loading.
-                twists = [10 * last * k**2 / 2000**2 for k in range(2001)]
-                e = [self.sliders(law, [t]) - exact.moment(t) for t in twists]
-                turns = [t for t, a, b, c in zip(twists[1:], e, e[1:], e[2:]) if (b - a) * (c - b) < 0][::-1]
-                path = [last * 10]
-                for k, x in enumerate(turns):
-                    path.append(path[-1] + (2 * x if k % 2 else -2 * x))
-                self.assertGreater(error(path), 0.9 * bound, profile)
+            for _ in range(50):
+                path = [draw.choice((-1, 1)) * last * draw.random()]
+                for _ in range(draw.randrange(1, 12)):
+                    towards = -1 if len(path) == 1 and path[0] > 0 or len(path) > 1 and path[-1] > path[-2] else 1
+                    path.append(path[-1] + towards * 2 * last * draw.random()**draw.choice((1, 3)))
+                self.assertLessEqual(error(path), bound * (1 + 1e-6), (profile, path))
+            # Reversals at the extremes of the error on first loading.
+            twists = [10 * last * k**2 / 2000**2 for k in range(2001)]
+            e = [self.sliders(elements, [t]) - m for t, m in zip(twists, exact.moment(twists, profile=profile))]
+            turns = [t for t, a, b, c in zip(twists[1:], e, e[1:], e[2:]) if (b - a) * (c - b) < 0][::-1]
+            path = [last * 10]
+            for k, x in enumerate(turns):
+                path.append(path[-1] + (2 * x if k % 2 else -2 * x))
+            self.assertGreater(error(path), 0.9 * bound, profile)
 
     def test_of_an_audit(self):
         """Four turns that are farther off than loops between t and -t may be."""
         exact = json.loads(program("exact", "--history", "0.643287,-0.361987,0.286858,0.025628", "--points", 1, "--json", "-"))
         law = json.loads(program("law", "--json", "-"))
-        found = self.sliders(law, [state["twist"] for state in exact["history"]]) / law["moment_limit"]
+        elements = list(zip(law["elements"]["stiffness"], law["elements"]["slip_moment"]))
+        found = self.sliders(elements, [state["twist"] for state in exact["history"]]) / law["moment_limit"]
         self.assertGreater(abs(found - 0.025628), law["elements"]["loop_error"])
         self.assertLessEqual(abs(found - 0.025628), law["elements"]["history_error"])
 
@@ -383,8 +377,7 @@ class Options(unittest.TestCase):
     def test_gives_as_many_elements_as_asked_for(self):
         for profile, counts in (("hertz", (1, 2, 13, 152, 153, 199, 200)), ("flat_punch", (3, 200)), ("power:3", (7,))):
             for count in counts:
-                law = json.loads(program("law", "--profile", profile, "--elements", count, "--json", "-"))
-                self.assertEqual(len(law["elements"]["stiffness"]), count, profile)
+                self.assertEqual(len(ParallelElements(Curve(profile), 0, count).each), count, profile)
 
     @unittest.skipUnless(COMPILER, "no C compiler")
     def test_two_headers_in_one_program(self):
@@ -406,18 +399,24 @@ class Options(unittest.TestCase):
 
     def test_any_name(self):
         """Characters that close a comment or a text of a language, or begin an escape."""
+        law = PackageLaw("hertz", limit_loads=3, units=Units(0.1, 1000.0, 5e-4, 4e10, 0.018))
+        for name in ("a--b\\Nc\"", "--", "*/ int x; /*", "\\\n\r\t--->", "]]>&<a>", '\\"\\"\\"', "@LIMIT@ {{ law }} {} \u00e9"):
+            law.name = name
+            self.read(name, {ending: law.file(f"law.{ending}") for ending in ("h", "py", "table", "inp", "xml", "sdf")})
         with tempfile.TemporaryDirectory() as folder:
-            files = [Path(folder, f"law.{ending}") for ending in ("h", "py", "table", "inp", "xml", "sdf")]
-            words = [word for file in files for word in ("--write", file)]
-            for name in ("a--b\\Nc\"", "--", "*/ int x; /*", "\\\n\r\t--->", "]]>&<a>", '\\"\\"\\"', "@LIMIT@ {} \u00e9"):
-                program("law", SCENES / "paper.toml", "--set", f"name={json.dumps(name)}", *words)
-                for file in files[4:]:
-                    xml.etree.ElementTree.parse(file)
-                module(files[1])
-                self.assertTrue(all(re.match(r"\*|[-\d]", line) for line in files[3].read_text().splitlines()), name)
-                lammps_rows(files[2])
-                if COMPILER:
-                    subprocess.run([COMPILER, "-std=c99", "-Werror", "-fsyntax-only", files[0]], check=True)
+            files = {ending: Path(folder, f"law.{ending}") for ending in ("h", "py", "table", "inp", "xml", "sdf")}
+            program("law", SCENES / "paper.toml", "--set", f"name={json.dumps(name)}",
+                    *(word for file in files.values() for word in ("--write", file)))
+            self.read(name, {ending: file.read_text() for ending, file in files.items()})
+
+    def read(self, name, texts):
+        for ending in ("xml", "sdf"):
+            xml.etree.ElementTree.fromstring(texts[ending])
+        module(texts["py"])
+        self.assertTrue(all(re.match(r"\*|[-\d]", line) for line in texts["inp"].splitlines()), name)
+        lammps_rows(texts["table"])
+        if COMPILER:
+            subprocess.run([COMPILER, "-std=c99", "-Werror", "-fsyntax-only", "-xc", "-"], input=texts["h"], text=True, check=True)
 
     def test_keeps_its_inputs(self):
         with tempfile.TemporaryDirectory() as folder:
