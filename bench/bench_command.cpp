@@ -64,7 +64,7 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
 /// Runs a program of Google Benchmark; `what` and further keys are the module's.
 convergence::ModuleAnswer run_benchmarks(const BenchRequest& request, Json what) {
   what["program"] = request.program;
-  what["starter"] = convergence::own_program().string();
+  what["starter"] = convergence::own_program_file().string();
   return convergence::run_package_module("speed.programs", what);
 }
 
