@@ -101,6 +101,7 @@ std::vector<Command> add_commands(CLI::App& app, std::string_view first_word, co
       {"study", convergence::add_study_command},
       {"gate", convergence::add_gate_command},
       {"hard", convergence::add_hard_command},
+      {"run", convergence::add_run_command},
       {"digits", convergence::add_digits_command},
       {"report", convergence::add_report_command},
       {"bench", bench::add_bench_command},

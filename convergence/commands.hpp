@@ -29,6 +29,8 @@ RunCommand add_gate_command(CLI::App& app);
 RunCommand add_hard_command(CLI::App& app);
 /// Adds `report`: runs the solves and studies of the page and draws it.
 RunCommand add_report_command(CLI::App& app);
+/// Adds `run`: solves the runs that another command has listed.
+RunCommand add_run_command(CLI::App& app);
 /// Adds `solve`. Exit code 1 where the solve did not reach its tolerance.
 /// ranks: the processes that share the solve.
 RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks);

@@ -34,6 +34,7 @@ STUDY = 'scene = "sphere.toml"\ncells = [8, 12]\n'
 GATES = '[[gate]]\nid = "a"\nscene = "sphere.toml"\nquantity = "twist_error"\nbelow = 1.0\nbasis = "b"\n'
 CASES = ('[[family]]\nname = "f"\nwhy = "w"\nscene = "sphere.toml"\n[[family.vary]]\nkey = "contact.friction"\n'
          'values = [0.1, 0.2]\n')
+RUNS = '{"scene": "sphere.toml", "set": ["grid.cells=[8,8]"], "rounding": "upward", "output": "runs"}\n'
 HEIGHTS = "0.1,0.2,0.3\n0.2,0.1,0.2\n"
 FIELD = sphere_field(2e9)
 COLUMNS = sphere_field(1.9186e9)  # carries 1000 N
@@ -52,6 +53,7 @@ READERS = {
     "study.toml": (STUDY, ("study", "study.toml", "--output", "runs")),
     "gates.toml": (GATES, ("gate", "gates.toml", "--output", "runs")),
     "cases.toml": (CASES, ("hard", "cases.toml", "--once", "--output", "runs")),
+    "runs.jsonl": (RUNS, ("run", "runs.jsonl")),
     "heights.csv": (HEIGHTS, ("solve", "map.toml")),
     "columns.csv": (COLUMNS, (*GIVEN, "contact.pressure_file=columns.csv")),
     "columns.h5": (None, (*GIVEN, "contact.pressure_file=columns.h5")),
@@ -123,6 +125,19 @@ DAMAGES = [
     ("gates.toml", 'gate = "a"\n', ("gate = ", "[[gate]]")),
     ("cases.toml", changed(CASES, "why", "whi"), ("why",)),
     ("cases.toml", changed(CASES, "[0.1, 0.2]", "[]"), ("values = []", "at least one")),
+    *(("runs.jsonl", RUNS + changed(RUNS, old, new), (":2", *says)) for old, new, *says in (
+        ('{"scene', '["scene', "is not JSON"),
+        (RUNS, "[1]", "is no run"),
+        ('"sphere.toml"', "3", "scene = 3", "a text"),
+        ('"scene": "sphere.toml", ', "", "scene = (missing)", "a scene file"),
+        ('"set"', '"sets"', "sets = ", "name, scene, set"),
+        ('["grid.cells=[8,8]"]', '[8, 8]', "set = [8,8]", "a list of texts"),
+        ('"upward"', '"up"', 'rounding = "up"', "nearest, upward, downward"),
+        ('"rounding": "upward"', '"variant": "flipped"', 'variant = "flipped"', "none"),
+        ('"rounding": "upward"', '"profile": 1', "profile = 1", "true or false"),
+        ('"runs"', '""', 'output = ""', "the folder"),
+        ('"rounding"', '"name": "paper-0", "rounding"', 'name = "paper-0"', "has changed"),
+        ('"rounding"', '"fields": "sphere.toml", "rounding"', "fields sphere.toml", "would overwrite"))),
     ("heights.csv", changed(HEIGHTS, "0.3", "inf"), (":1", "inf", "finite")),
     ("heights.csv", changed(HEIGHTS, "0.3", "1e400"), (":1", "1e400", "finite")),
     ("heights.csv", changed(HEIGHTS, "0.3\n", "0.3,x\n"), (":1",)),
@@ -227,7 +242,7 @@ class HostileInput(ProgramTest):
                                     ("a page", b"<!doctype html><html><body>Not found</body></html>\n"),
                                     ("deep", 200000 * b"["), ("an endless line", 300000 * b"a")):
                 Path(name).write_bytes(content)
-                if (name, damage) != ("gates.toml", "empty"):  # there is nothing to do
+                if damage != "empty" or name not in ("gates.toml", "runs.jsonl"):  # there is nothing to do
                     self.refused(name, damage)
 
     def test_what_is_cut_off_anywhere_is_read_or_refused(self):

@@ -225,9 +225,11 @@ class Results(unittest.TestCase):
         result = self.run_and_check("study", self.file("far.toml", study), "--output", self.folder / "far", code=1)
         self.assertGreater(result["failed_runs"]["count"], 0)
 
-    def test_shard(self):
-        self.run_and_check("study", self.file("study.toml", STUDY), "--shard", "2/3", "--output", self.folder / "shard",
-                           schema="shard")
+    def test_list_and_run(self):
+        listed = self.run_and_check("study", self.file("study.toml", STUDY), "--output", self.folder / "listed", "--list-runs",
+                                    self.folder / "runs.jsonl", schema="list")
+        run = self.run_and_check("run", self.folder / "runs.jsonl", "--only", listed["listed"])
+        self.assertEqual(run["runs"][0]["line"], listed["listed"])
 
     def test_gate(self):
         gates = [("passes", "twist_error", "below = 1e-2"), ("fails", "twist_error", "below = 1e-6"),

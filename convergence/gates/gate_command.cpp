@@ -62,24 +62,18 @@ std::vector<Gate> with_overrides(std::vector<Gate> gates, const std::vector<std:
 }
 
 int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
-  const std::optional<Shard> shard = request.runs.wanted_shard();
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
   const GateFiles files = read_gate_files(request.files, request.results);
   require_inputs_kept(command, files_behind(files.gates));
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
-  const ProcessPool pool = request.runs.pool();
+  std::vector<PreparedRun> lacking;
+  const ProcessPool pool = request.runs.pool(&lacking);
   const std::vector<Gate> gates =
       with_overrides(select_gates(files.gates, request.only), request.runs.overrides);
-  if (shard) {
-    const ShardResult done = run_shard(gate_runs(gates, pool), *shard, pool);
-    result = to_json(done);
-    text << shard_text(done);
-    return done.failed.count() == 0 ? 0 : 1;
-  }
-  if (!request.runs.merged.empty()) require_finished(gate_runs(gates, pool), pool);
   std::vector<Judgement> judged = run_gates(gates, pool);
+  if (!request.runs.list.empty()) return request.runs.write_list(lacking, text, result);
   for (Judgement& judgement : judged) {
     const std::string of_file = complaint_of_file(judgement.why, request.runs.overrides);
     if (of_file.empty()) continue;
@@ -111,7 +105,7 @@ RunCommand add_gate_command(CLI::App& app) {
                       "folder of the result files that gates name (default: the gate file's folder)");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
-  request->runs.add_shards_to(*command, {"--junit", "--summary"});
+  request->runs.add_list_to(*command, {"--junit", "--summary"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "

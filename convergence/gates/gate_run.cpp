@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 #include <variant>
@@ -164,22 +163,6 @@ std::vector<GateSource> sources_of(const std::vector<Gate>& gates) {
       sources.push_back(other_source(gate.source, relative->file));
   }
   return sources;
-}
-
-std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool) {
-  std::vector<PreparedRun> runs;
-  for (const GateSource& source : sources_of(gates)) {
-    try {
-      if (const auto* const scene = std::get_if<SceneSource>(&source)) {
-        runs.push_back(prepare_run({.scene = scene->file, .overrides = scene->overrides}));
-      } else if (const auto* const study = std::get_if<StudySource>(&source)) {
-        std::ranges::move(study_runs(read_study(study->file, study->overrides), pool.memory_limit()),
-                          std::back_inserter(runs));
-      }
-    } catch (const InputError&) {  // run_gates() refuses its gate
-    }
-  }
-  return runs;
 }
 
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {

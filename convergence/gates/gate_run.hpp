@@ -11,13 +11,11 @@ namespace slipstick::convergence {
 /// 1. Solves all scenes in parallel and equal ones once, runs the studies, reads the files; 2. judges the
 /// gates;
 /// 3. finds the largest part of the error where a gate on an error fails. A gate whose source cannot be read
-/// is refused, and the others are judged.
+/// is refused, and the others are judged. A pool that lists runs gets those of 1, and of 3 once their results
+/// are known.
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
 
 /// The sources of the gates in their order, then the sources of the numbers to which gates are relative.
 std::vector<GateSource> sources_of(const std::vector<Gate>& gates);
-
-/// The solves of step 1. A source that cannot be read has none.
-std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

@@ -52,7 +52,8 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
     methods.push_back(read_beside_method(word));
     runs.overrides.push_back(methods.back().override);  // named on the command line, it may run
   }
-  const ProcessPool pool = runs.pool();
+  std::vector<PreparedRun> lacking;
+  const ProcessPool pool = runs.pool(&lacking);
   HardResult found;
   {
     const Interrupts interrupts;
@@ -63,6 +64,7 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
                             .fields = request.fields},
                            pool);
   }
+  if (!request.runs.list.empty()) return runs.write_list(lacking, text, result);
   result = to_json(found);
   text << hard_text(found);
   return found.count(HardVerdict::wrong) + found.count(HardVerdict::not_converged) == 0 ? 0 : 1;
@@ -84,6 +86,7 @@ RunCommand add_hard_command(CLI::App& app) {
       ->delimiter(',');
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
+  request->runs.add_list_to(*command, {});
   command->footer(
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
       "repeating an interrupted command goes on from there.\nExit code 0: every answer is certified or "

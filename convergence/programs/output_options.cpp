@@ -18,8 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The options of all commands that name an output file.
-constexpr std::array<std::string_view, 8> kOutputs{"--json",  "--fields",        "--figure", "--summary",
-                                                   "--junit", "--accuracy-data", "--write",  "--checkpoint"};
+constexpr std::array<std::string_view, 9> kOutputs{"--json",    "--fields",     "--figure",
+                                                   "--summary", "--junit",      "--accuracy-data",
+                                                   "--write",   "--checkpoint", "--list-runs"};
 /// Prefix of a file's name in `exact --profile`.
 constexpr std::string_view kProfileFile = "file:";
 

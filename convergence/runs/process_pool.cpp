@@ -70,31 +70,6 @@ std::optional<SolveRecord> find(const ResultCache& cache, const PreparedRun& run
   }
 }
 
-/// The folder of finished results, and the folders that it joins.
-class JoinedCaches {
- public:
-  explicit JoinedCaches(const ProcessPoolOptions& options) : own_(options.folder, options.program) {
-    for (const fs::path& folder : options.joined) others_.push_back(own_.in(folder));
-  }
-
-  const ResultCache& own() const { return own_; }
-
-  std::optional<SolveRecord> find_or_join(const PreparedRun& run) const {
-    if (std::optional<SolveRecord> found = find(own_, run)) return found;
-    for (const ResultCache& other : others_) {
-      std::optional<SolveRecord> found = find(other, run);
-      if (!found) continue;
-      own_.keep(run.name, run.cache_key, to_json(*found), run.spec.fields);
-      return found;
-    }
-    return std::nullopt;
-  }
-
- private:
-  ResultCache own_;
-  std::vector<ResultCache> others_;
-};
-
 /// The message of a process that failed, or how it ended; empty where its result counts.
 std::string failure_of(const ProgramEnd& end) {
   constexpr std::string_view kName = "slipstick: ";
@@ -289,15 +264,19 @@ std::vector<PreparedRun> ProcessPool::with_versions(const std::vector<PreparedRu
 
 std::vector<SolveRecord> ProcessPool::run_prepared(const std::vector<PreparedRun>& unversioned) const {
   const std::vector<PreparedRun> runs = with_versions(unversioned);
-  const JoinedCaches caches(options_);
+  const ResultCache cache(options_.folder, options_.program);
   std::vector<Task> tasks;
   std::map<std::string, SolveRecord> known;
   for (const PreparedRun& run : runs) {
     const auto [place, is_new] = known.try_emplace(run.name);
     if (!is_new) continue;
-    std::optional<SolveRecord> found = caches.find_or_join(run);
-    if (found) {
+    if (std::optional<SolveRecord> found = find(cache, run)) {
       place->second = *std::move(found);
+      continue;
+    }
+    if (options_.lacking != nullptr) {
+      options_.lacking->push_back(run);
+      place->second = not_computed(RunStatus::refused, "it is listed, and not solved", run.spec);
       continue;
     }
     Task task = make_task(run, options_.memory_limit);
@@ -309,7 +288,7 @@ std::vector<SolveRecord> ProcessPool::run_prepared(const std::vector<PreparedRun
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
-  TaskQueue queue(std::move(tasks), caches.own(), options_);
+  TaskQueue queue(std::move(tasks), cache, options_);
   for (auto& [name, record] : starts_programs() ? queue.work() : queue.work_here()) {
     known[name] = std::move(record);
   }
@@ -345,16 +324,6 @@ std::vector<SolveRecord> ProcessPool::run_or_refuse(const std::vector<RunSpec>& 
                                             : not_computed(RunStatus::refused, complaints[i], specs[i]));
   }
   return records;
-}
-
-std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& unversioned) const {
-  const std::vector<PreparedRun> runs = with_versions(unversioned);
-  const JoinedCaches caches(options_);
-  std::vector<PreparedRun> missing;
-  for (const PreparedRun& run : runs) {
-    if (!caches.find_or_join(run)) missing.push_back(run);
-  }
-  return missing;
 }
 
 }  // namespace slipstick::convergence

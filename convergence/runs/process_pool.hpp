@@ -17,11 +17,12 @@ struct ProcessPoolOptions {
   /// Bytes that all processes together may take; none: most of the memory that is free.
   std::optional<double> memory_limit = {};
   std::filesystem::path program = {};  ///< the slipstick program, which solves
-  /// Other folders of finished results: these are not solved again, but copied to `folder`.
-  std::vector<std::filesystem::path> joined = {};
   /// Called at least once a second, and after each signal: whether to stop. Null: never.
   bool (*interrupted)() = nullptr;
   AllowedPrograms programs = {};  ///< that scenes may name
+  /// Gets the runs without a result, of which none is solved: their records are refused. Null: they are
+  /// solved.
+  std::vector<PreparedRun>* lacking = nullptr;
 };
 
 /// Solves many scenes side by side, each in a slipstick process, as many at a time as processors and memory
@@ -46,9 +47,8 @@ class ProcessPool {
   /// The same; a scene that cannot be read gives a record with the status refused.
   std::vector<SolveRecord> run_or_refuse(const std::vector<RunSpec>& specs) const;
 
-  /// The runs without a result in the folder and in the joined ones.
-  std::vector<PreparedRun> missing(const std::vector<PreparedRun>& runs) const;
-
+  /// Number of runs that were listed instead of being solved.
+  std::size_t lacking() const { return options_.lacking == nullptr ? 0 : options_.lacking->size(); }
   std::optional<double> memory_limit() const { return options_.memory_limit; }
   const std::filesystem::path& folder() const { return options_.folder; }
 

@@ -85,13 +85,6 @@ ResultCache::ResultCache(fs::path folder, const fs::path& program)
   solver::make_folder(folder_);
 }
 
-ResultCache ResultCache::in(fs::path folder) const {
-  ResultCache other(*this);
-  other.folder_ = std::move(folder);
-  solver::make_folder(other.folder_);
-  return other;
-}
-
 std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key,
                                       const fs::path& beside) const {
   Json found = find_json(file(name));

@@ -20,9 +20,6 @@ class ResultCache {
   /// InputError for a folder that cannot be made.
   explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = own_program());
 
-  /// The cache of the same program in another folder. Throws as above.
-  ResultCache in(std::filesystem::path folder) const;
-
   /// The result of a name (its file's name without ending), if it is on disk. beside: a file that belongs to
   /// the result, and must be unchanged since; empty: none.
   std::optional<Json> find(const std::string& name, const std::string& cache_key,

@@ -1,9 +1,15 @@
 #include "convergence/runs/run_options.hpp"
 
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "convergence/results/output.hpp"
+#include "convergence/results/provenance.hpp"
+#include "convergence/runs/run_list.hpp"
 #include "convergence/system/machine.hpp"
-#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -53,39 +59,33 @@ void RunOptions::add_programs_to(CLI::App& command) {
   add_program_options(command, overrides, allow_programs);
 }
 
-void RunOptions::add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement) {
-  CLI::Option* const part =
+void RunOptions::add_list_to(CLI::App& command, const std::vector<std::string>& of_judgement) {
+  CLI::Option* const option =
       command
-          .add_option("--shard", shard,
-                      "I/N: solve the I-th of N parts of the runs, of about equal predicted work, keep their "
-                      "results in --output and judge nothing; --merge does, of all parts")
-          ->type_name("I/N");
-  CLI::Option* const merge = command
-                                 .add_option("--merge", merged,
-                                             "folders in which shards kept their results: join them in "
-                                             "--output and judge; stands last")
-                                 ->type_name("FOLDER");
-  part->excludes(merge);
-  for (const std::string& option : of_judgement) part->excludes(command.get_option(option));
+          .add_option("--list-runs", list,
+                      "write the runs without a result in --output to this file, a JSON object a line, and "
+                      "solve none: slipstick run solves them")
+          ->type_name("FILE");
+  for (const std::string& other : of_judgement) option->excludes(command.get_option(other));
 }
 
-std::optional<Shard> RunOptions::wanted_shard() const {
-  return shard.empty() ? std::nullopt : std::optional(read_shard(shard));
-}
-
-ProcessPool RunOptions::pool() const {
-  for (const std::string& folder : merged) {
-    if (!std::filesystem::is_directory(folder)) {
-      throw solver::InputError("--merge " + folder, "is no folder; allowed: the --output folders of shards");
-    }
-  }
+ProcessPool RunOptions::pool(std::vector<PreparedRun>* lacking) const {
   return ProcessPool({.folder = output,
                       .jobs = jobs,
                       .memory_limit = memory_limit,
                       .program = own_program(),
-                      .joined = {merged.begin(), merged.end()},
                       .interrupted = Interrupts::seen,
-                      .programs = {allow_programs, overrides, own_program()}});
+                      .programs = {allow_programs, overrides, own_program()},
+                      .lacking = list.empty() ? nullptr : lacking});
+}
+
+int RunOptions::write_list(const std::vector<PreparedRun>& lacking, std::ostream& text, Json& result) const {
+  const std::string lines = run_list_text(lacking, output);
+  write_option_file("--list-runs", list, lines);
+  const auto count = std::ranges::count(lines, '\n');
+  text << fmt::format("{} runs without a result are listed in {}\n", count, list);
+  result = {{"listed", count}, {"list", list}, {"output", output}, {"provenance", provenance(1)}};
+  return 0;
 }
 
 Interrupts::Interrupts() {

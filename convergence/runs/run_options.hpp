@@ -3,12 +3,12 @@
 #include <array>
 #include <csignal>
 #include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "convergence/runs/process_pool.hpp"
-#include "convergence/runs/shard.hpp"
 
 namespace CLI {
 class App;
@@ -31,8 +31,7 @@ struct RunOptions {
   std::string output;                              ///< folder that keeps finished solves
   int jobs = 0;                                    ///< see ProcessPoolOptions
   std::optional<std::uint64_t> memory_limit = {};  ///< bytes
-  std::string shard = {};                          ///< as read_shard() takes it; empty: all runs
-  std::vector<std::string> merged = {};            ///< folders of other shards
+  std::string list = {};                           ///< gets the runs without a result; empty: they are solved
   bool allow_programs = false;                     ///< --allow-programs
   std::vector<std::string> overrides = {};         ///< by the command line, which may name a program
 
@@ -40,15 +39,15 @@ struct RunOptions {
   void add_to(CLI::App& command);
   /// --program, --allow-programs.
   void add_programs_to(CLI::App& command);
-  /// --shard and --merge. of_judgement: options that need a judgement, which --shard does not make, so that
-  /// the two exclude each other.
-  void add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement);
+  /// --list-runs. of_judgement: options that need a judgement, which --list-runs does not make, so that the
+  /// two exclude each other.
+  void add_list_to(CLI::App& command, const std::vector<std::string>& of_judgement);
 
-  /// None without --shard. Throws InputError for a word that is no shard.
-  std::optional<Shard> wanted_shard() const;
-  /// The pool of these options; a signal noted by Interrupts stops it. Throws InputError where --merge names
-  /// no folder.
-  ProcessPool pool() const;
+  /// The pool of these options; a signal noted by Interrupts stops it. lacking: gets the runs that
+  /// --list-runs lists.
+  ProcessPool pool(std::vector<PreparedRun>* lacking = nullptr) const;
+  /// Writes the file of --list-runs, and the command's result; returns its exit code.
+  int write_list(const std::vector<PreparedRun>& lacking, std::ostream& text, Json& result) const;
 };
 
 /// Notes SIGINT, SIGTERM and SIGHUP during its lifetime; signals that were ignored before, as under nohup,

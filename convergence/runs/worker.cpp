@@ -12,6 +12,7 @@
 #include "convergence/results/output.hpp"
 #include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_list.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
@@ -33,30 +34,17 @@ std::vector<std::string> worker_words(const fs::path& program, const fs::path& f
   return words;
 }
 
-/// A run as CBOR, whose texts may be any bytes; run_of() reads it.
+/// A run as CBOR, whose texts may be any bytes.
 std::string text_of(const RunSpec& run) {
   std::string bytes;
-  Json::to_cbor({run.scene.string(), run.overrides, run.rounding, to_string(run.variant), run.fields.string(),
-                 run.step_before, run.profile, run.program_version},
-                bytes);
+  Json::to_cbor(to_json(run), bytes);
   return bytes;
-}
-
-RunSpec run_of(const Json& run) {
-  return {.scene = run.at(0).get<std::string>(),
-          .overrides = run.at(1),
-          .rounding = run.at(2),
-          .variant = variant_of(run.at(3)),
-          .fields = run.at(4).get<std::string>(),
-          .step_before = run.at(5),
-          .profile = run.at(6),
-          .program_version = run.at(7)};
 }
 
 /// Missing at the end of the input, and for an input that is no run.
 std::optional<RunSpec> next_run(std::istream& input) {
   const Json run = Json::from_cbor(input, false, false);
-  return run.is_array() ? std::optional(run_of(run)) : std::nullopt;
+  return run.is_object() ? std::optional(run_of(run, "standard input")) : std::nullopt;
 }
 
 /// Solves the scene and writes its fields; a scene that cannot be solved is refused or failed.

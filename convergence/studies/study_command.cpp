@@ -26,28 +26,18 @@ bool all_converged(const StudyResult& result) {
   });
 }
 
-int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& pool, std::ostream& text,
-                    Json& result) {
-  const Interrupts interrupts;
-  const ShardResult done = run_shard(study_runs(study, pool.memory_limit()), shard, pool);
-  result = to_json(done);
-  text << shard_text(done);
-  return done.failed.count() == 0 ? 0 : 1;
-}
-
 int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostream& text, Json& result) {
-  const std::optional<Shard> shard = request.runs.wanted_shard();
   if (!request.figure.empty()) require_figure_format(request.figure);
   const Study study = read_study(request.study, request.runs.overrides);
   require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
-  const ProcessPool pool = request.runs.pool();
-  if (shard) return run_study_shard(study, *shard, pool, text, result);
+  std::vector<PreparedRun> lacking;
+  const ProcessPool pool = request.runs.pool(&lacking);
   StudyResult found;
   {
     const Interrupts interrupts;
-    if (!request.runs.merged.empty()) require_finished(study_runs(study, pool.memory_limit()), pool);
     found = run_study(study, pool);
   }
+  if (!request.runs.list.empty()) return request.runs.write_list(lacking, text, result);
   result = to_json(found);
   text << study_text(found);
   if (!request.figure.empty()) draw_study(request.figure, result);
@@ -76,7 +66,7 @@ RunCommand add_study_command(CLI::App& app) {
   command->add_option("--figure", request->figure, "draw errors, orders and budget: .svg, .pdf or .png");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
-  request->runs.add_shards_to(*command, {"--figure"});
+  request->runs.add_list_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: an interrupted command continues when it is repeated.\nExit code 0: done; "

@@ -89,7 +89,9 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
       const std::vector<RunSpec> more = series_runs(study, all[i]);
       runs.insert(runs.end(), more.begin(), more.end());
     }
+    const std::size_t listed_before = pool.lacking();
     const std::vector<Json> solved = solve_all(runs, pool, failed);
+    if (pool.lacking() > listed_before) break;
     std::span<const Json> found(solved);
     for (const std::size_t i : open) results[i] = take_series(all[i], found);
     std::erase_if(open, [&](std::size_t i) {
@@ -106,21 +108,13 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
 
 }  // namespace
 
-std::vector<PreparedRun> study_runs(const Study& study, std::optional<double> memory_limit) {
-  std::vector<PreparedRun> prepared;
-  for (const Series& series : make_series(study, memory_limit)) {
-    for (const RunSpec& run : series_runs(study, series)) prepared.push_back(prepare_run(run));
-    if (!varies_tolerance(study)) continue;
-    for (const RunSpec& run : tolerance_runs(study, series)) prepared.push_back(prepare_run(run));
-  }
-  return prepared;
-}
-
 StudyResult run_study(const Study& study, const ProcessPool& pool) {
   std::vector<Series> all = make_series(study, pool.memory_limit());
   StudyResult result{.name = study.name, .scene = study.scene.string(), .shifts = study.shifts};
+  const std::size_t listed_before = pool.lacking();
   const auto results = solve_series(study, all, pool, result.failed_runs);
-  for (std::size_t i = 0; i < all.size(); ++i)
+  const bool is_judged = pool.lacking() == listed_before;
+  for (std::size_t i = 0; i < all.size() && is_judged; ++i)
     result.series.push_back(judge_series(study, all[i], results[i]));
   if (varies_tolerance(study)) {
     std::vector<RunSpec> runs;
@@ -130,7 +124,7 @@ StudyResult run_study(const Study& study, const ProcessPool& pool) {
     }
     const std::vector<Json> solved = solve_all(runs, pool, result.failed_runs);
     std::span<const Json> found(solved);
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < all.size() && is_judged; ++i) {
       const auto by_mesh = take_tolerances(study, all[i], found);
       result.series[i].tolerances = tolerance_rows(study, all[i], by_mesh, results[i]);
     }

@@ -5,7 +5,7 @@ _slipstick() {
   local words=""
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    words="exact solve check law study gate hard digits report bench compare --help --version"
+    words="exact solve check law study gate hard run digits report bench compare --help --version"
   else
     case "${COMP_WORDS[1]} $previous" in
       "exact --moment-ratio" | "exact --moment-deficit" | "exact --stick-ratio" | "exact --stick-complement" | "exact --twist" | "exact --history" | "exact --points" | "exact --unload-to" | "exact --certified" | "exact --radius" | "exact --profile" | "exact --normal-load" | "exact --effective-modulus" | "exact --shape" | "exact --friction" | "exact --shear-modulus" | "exact --json") return ;;
@@ -21,13 +21,15 @@ _slipstick() {
       "law --profile" | "law --write" | "law --prefix" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
       "law "*) [[ $current != -* ]] || words="--help --set --profile --write --prefix --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --program" | "study --shard" | "study --merge" | "study --json") return ;;
-      "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
-      "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --shard" | "gate --merge" | "gate --json") return ;;
-      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --results --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
+      "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --program" | "study --list-runs" | "study --json") return ;;
+      "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
+      "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --list-runs" | "gate --json") return ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --results --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
       "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "hard --fields" | "hard --beside" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --program" | "hard --json") return ;;
-      "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --program --allow-programs --json --quiet" ;;
+      "hard --fields" | "hard --beside" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --program" | "hard --list-runs" | "hard --json") return ;;
+      "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
+      "run --only" | "run --output" | "run --jobs" | "run --memory-limit" | "run --program" | "run --json") return ;;
+      "run "*) [[ $current != -* ]] || words="--help --only --output --jobs --memory-limit --program --allow-programs --json --quiet" ;;
       "digits --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "digits --samples" | "digits --seed" | "digits --output" | "digits --jobs" | "digits --memory-limit" | "digits --json") return ;;
       "digits "*) [[ $current != -* ]] || words="--help --set --samples --seed --output --jobs --memory-limit --json --quiet" ;;

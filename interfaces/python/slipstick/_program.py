@@ -16,15 +16,17 @@ from .errors import Failure, InputError
 _MESSAGE = "slipstick: "
 
 
-def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], object] | None = None) -> dict[str, Any]:
+def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], object] | None = None,
+        folder: str | None = None) -> dict[str, Any]:
     """Runs a command and returns its result, good or bad; raises an error if it could not judge. progress is called with each
-    line of progress. Ctrl-C ends the program too, and so does, on Linux, the end of this process; finished solves stay on disk."""
-    with tempfile.TemporaryDirectory() as folder:
-        output = Path(folder) / "result.json"
+    line of progress. folder: where the command runs; None: here. Ctrl-C ends the program too, and so does, on Linux, the
+    end of this process; finished solves stay on disk."""
+    with tempfile.TemporaryDirectory() as place:
+        output = Path(place) / "result.json"
         process = subprocess.Popen(
             [os.fspath(PROGRAM), "--tied-to", str(os.getpid()), command, *(os.fspath(word) for word in words), "--quiet", "--json", os.fspath(output)],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
-            env={**os.environ, "SLIPSTICK_PYTHON": sys.executable})
+            env={**os.environ, "SLIPSTICK_PYTHON": sys.executable}, cwd=folder)
         assert process.stderr is not None
         said: list[str] = []
         try:

@@ -5,6 +5,7 @@ import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -114,12 +115,12 @@ def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: fl
 
 
 def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Path_ | None = None,
-         results: Path_ | None = None, jobs: int = 0, progress: Progress = None) -> Gates:
+         results: Path_ | None = None, jobs: int = 0, executor: Executor | None = None, progress: Progress = None) -> Gates:
     """Runs gates: numbers with bounds that they must keep (docs/guides/gate-your-ci.md).
 
     files: gate files. only: ids of the gates to run. output: a folder that stores finished solves (default: they are not
-    stored). results: the folder of the result files that gates name. jobs: parallel solves, 0: one a processor. Raises
-    InputError if a file is missing; a gate that cannot be judged has the outcome `refused`.
+    stored). results: the folder of the result files that gates name. jobs: parallel solves, 0: one a processor. executor:
+    solves the runs, as in study(). Raises InputError if a file is missing; a gate that cannot be judged has the outcome `refused`.
     """
     names = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if missing := [os.fspath(name) for name in names if not os.path.isfile(name)]:
@@ -128,18 +129,24 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
     if results is not None:
         options += ["--results", os.fspath(results)]
     with _kept(output) as folder:
-        return Gates(run("gate", *names, *options, "--output", folder, "--jobs", str(jobs), progress=progress))
+        words = [*names, *options, "--output", folder, "--jobs", str(jobs)]
+        _solve_listed("gate", words, executor, progress)
+        return Gates(run("gate", *words, progress=progress))
 
 
-def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, progress: Progress = None,
-          **overrides: Any) -> Study:
+def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, executor: Executor | None = None,
+          progress: Progress = None, **overrides: Any) -> Study:
     """Solves a scene on many meshes or with many tolerances, and judges orders and errors (docs/reference/study.md).
 
     file: a study file. output: a folder that stores finished solves, which the same call uses again (default: they are not
-    stored). jobs: parallel solves, 0: one a processor. overrides: replace keys of the scene, as in solve().
+    stored). jobs: parallel solves, 0: one a processor. executor: solves each run in a call of its own, in processes or on other
+    machines that have this package and see the files under the same paths (docs/guides/many-scenes.md). overrides: replace keys
+    of the scene, as in solve().
     """
     with _kept(output) as folder:
-        return Study(run("study", file, *_set(overrides), "--output", folder, "--jobs", str(jobs), progress=progress))
+        words = [file, *_set(overrides), "--output", folder, "--jobs", str(jobs)]
+        _solve_listed("study", words, executor, progress)
+        return Study(run("study", *words, progress=progress))
 
 
 def command(name: str, *words: Path_, progress: Progress = None) -> Result:
@@ -149,6 +156,36 @@ def command(name: str, *words: Path_, progress: Progress = None) -> Result:
     0.0
     """
     return Result(run(name, *words, progress=progress))
+
+
+def _solve_listed(command: str, words: list[Path_], executor: Executor | None, progress: Progress) -> None:
+    """Solves the runs that a command lists, then those that it lists with their results, until it lists nothing new."""
+    seen: set[str] = set()
+    while executor is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "runs.jsonl"
+            run(command, *words, "--list-runs", file)
+            lines = [line for line in file.read_text().splitlines() if line not in seen]
+        if not lines:
+            return
+        seen.update(lines)
+        futures = [executor.submit(_solve_line, line, os.getcwd()) for line in lines]
+        try:
+            for done, future in enumerate(as_completed(futures), 1):
+                future.result()
+                if progress is not None:
+                    progress(f"{done} of {len(lines)} runs")
+        finally:
+            for future in futures:
+                future.cancel()
+
+
+def _solve_line(line: str, folder: str) -> None:
+    """Solves one run of a list that was written in this folder."""
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "runs.jsonl"
+        file.write_text(line + "\n")
+        run("run", file, "--only", "1", folder=folder)
 
 
 def _set(overrides: Mapping[str, Any]) -> list[str]:
