@@ -21,7 +21,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/cost.hpp"
-#include "convergence/studies/study_plan.hpp"
+#include "convergence/studies/study_run.hpp"
 #include "solver/model/make_model.hpp"
 
 namespace slipstick::bench {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "convergence/gates/published.hpp"
+#include "convergence/gates/gate.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"
 #include "solver/input/toml_reader.hpp"

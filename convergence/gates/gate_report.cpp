@@ -10,7 +10,7 @@
 #include <tuple>
 #include <variant>
 
-#include "convergence/gates/published.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/results/markup.hpp"
 #include "solver/input/input_file.hpp"
 

@@ -10,10 +10,10 @@
 #include <set>
 #include <variant>
 
-#include "convergence/gates/published.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/results/json_text.hpp"
-#include "convergence/results/quantity.hpp"
-#include "convergence/studies/budget.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "convergence/studies/study_judgement.hpp"
 #include "convergence/studies/study_run.hpp"
 #include "solver/input/input_error.hpp"
 

@@ -243,25 +243,8 @@ Json row_json(const HardRow& row) {
   return json;
 }
 
-/// Number of cases with each verdict, in the order of the enumeration. family: empty for all.
-std::array<std::size_t, 4> counts(const HardResult& result, const std::string& family) {
-  std::array<std::size_t, 4> counts{};
-  for (const HardRow& row : result.rows) {
-    if (family.empty() || row.hard.family == family) ++counts[static_cast<std::size_t>(row.judged.verdict)];
-  }
-  return counts;
-}
-
-/// The same of a method's verdicts.
-std::array<std::size_t, 5> method_counts(const HardResult& result, std::size_t method) {
-  std::array<std::size_t, 5> counts{};
-  for (const HardRow& row : result.rows)
-    ++counts[static_cast<std::size_t>(row.methods[method].second.verdict)];
-  return counts;
-}
-
 template <typename Verdict, std::size_t N>
-Json counts_json(const std::array<std::size_t, N>& counts) {
+Json by_verdict(const std::array<std::size_t, N>& counts) {
   Json json = Json::object();
   for (std::size_t i = 0; i < N; ++i) json[to_string(static_cast<Verdict>(i))] = counts[i];
   return json;
@@ -283,7 +266,7 @@ std::string methods_text(const HardResult& result) {
   std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
                                  "refused", "not converged", "other direction", "other answer");
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
-    const auto [agree, refuse, open, direction, answer] = method_counts(result, i);
+    const auto [agree, refuse, open, direction, answer] = result.method_counts(i);
     text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", result.methods[i], agree, refuse, open,
                         direction, answer);
   }
@@ -304,8 +287,18 @@ BesideMethod read_beside_method(const std::string& word) {
                                                            fmt::join(allowed, ", ")));
 }
 
-std::size_t HardResult::count(HardVerdict verdict) const {
-  return counts(*this, "")[static_cast<std::size_t>(verdict)];
+std::array<std::size_t, 4> HardResult::counts(const std::string& family) const {
+  std::array<std::size_t, 4> counts{};
+  for (const HardRow& row : rows) {
+    if (family.empty() || row.hard.family == family) ++counts[static_cast<std::size_t>(row.judged.verdict)];
+  }
+  return counts;
+}
+
+std::array<std::size_t, 5> HardResult::method_counts(std::size_t method) const {
+  std::array<std::size_t, 5> counts{};
+  for (const HardRow& row : rows) ++counts[static_cast<std::size_t>(row.methods[method].second.verdict)];
+  return counts;
 }
 
 HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,
@@ -318,19 +311,19 @@ HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions&
   return result;
 }
 
+Json counts_json(const HardResult& result) { return by_verdict<HardVerdict>(result.counts()); }
+
 Json to_json(const HardResult& result) {
   Json families = Json::object();
   for (const auto& [name, why] : families_of(result)) {
-    families[name] = {{"why", why}, {"counts", counts_json<HardVerdict>(counts(result, name))}};
+    families[name] = {{"why", why}, {"counts", by_verdict<HardVerdict>(result.counts(name))}};
   }
   Json rows = Json::array();
   for (const HardRow& row : result.rows) rows.push_back(row_json(row));
-  Json json{{"counts", counts_json<HardVerdict>(counts(result, ""))},
-            {"families", std::move(families)},
-            {"rows", std::move(rows)}};
+  Json json{{"counts", counts_json(result)}, {"families", std::move(families)}, {"rows", std::move(rows)}};
   Json methods = Json::object();
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
-    methods[result.methods[i]] = counts_json<MethodVerdict>(method_counts(result, i));
+    methods[result.methods[i]] = by_verdict<MethodVerdict>(result.method_counts(i));
   }
   if (!methods.empty()) json.push_back({"methods", std::move(methods)});
   json.push_back({"provenance", provenance(1)});
@@ -341,7 +334,7 @@ std::string hard_text(const HardResult& result) {
   std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",
                                  "not converged", "wrong");
   const auto line = [&](const std::string& name, const std::string& family) {
-    const auto [certain, refuse, open, false_answers] = counts(result, family);
+    const auto [certain, refuse, open, false_answers] = result.counts(family);
     text += fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", name, certain, refuse, open, false_answers);
   };
   for (const auto& [name, why] : families_of(result)) line(name, name);

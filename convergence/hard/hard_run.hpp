@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -7,7 +8,6 @@
 #include <vector>
 
 #include "convergence/hard/hard_case.hpp"
-#include "convergence/hard/hard_judgement.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/scene/scene.hpp"
 
@@ -46,7 +46,10 @@ struct HardResult {
   std::vector<HardRow> rows;
   std::vector<std::string> methods;  ///< names
 
-  std::size_t count(HardVerdict verdict) const;
+  /// Numbers of cases by HardVerdict, and of a method's answers by MethodVerdict. family: empty for all.
+  std::array<std::size_t, 4> counts(const std::string& family = "") const;
+  std::array<std::size_t, 5> method_counts(std::size_t method) const;
+  std::size_t count(HardVerdict verdict) const { return counts()[static_cast<std::size_t>(verdict)]; }
 };
 
 /// Solves and judges. A certified answer becomes wrong where an equivalent scene has another one, or a finer
@@ -56,6 +59,8 @@ HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions&
 
 /// docs/schema/hard.schema.json
 Json to_json(const HardResult& result);
+/// Its key `counts`.
+Json counts_json(const HardResult& result);
 
 /// For a person: counts of each family, then the cases that are wrong or did not converge, with the command
 /// that repeats each.

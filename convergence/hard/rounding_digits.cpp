@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "convergence/results/provenance.hpp"
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
 namespace {

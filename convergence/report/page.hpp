@@ -1,13 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "convergence/gates/gate.hpp"
+#include "convergence/hard/hard_run.hpp"
+#include "convergence/hard/rounding_digits.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/studies/study_result.hpp"
+#include "solver/scene/scene.hpp"
 
 /// The page of a scene as a value: docs/schema/report.schema.json has the same names.
 namespace slipstick::convergence {
@@ -139,7 +143,7 @@ struct KnownField {
 /// The paper's validation. figures: the keys of the data that are only drawn.
 struct PaperValidation {
   Json figures = {};
-  Json hard = {};
+  HardResult hard = {};
   std::vector<KnownField> peers = {};
   std::vector<Judgement> literature = {};
   std::optional<std::vector<Judgement>> gates = {};  ///< none on a quick page
@@ -157,11 +161,15 @@ struct Page {
   std::optional<Cost> cost = {};
   std::optional<std::vector<PageProgram>> programs = {};
   std::optional<OperatorTimes> operators = {};
-  std::optional<Json> hard = {};
-  std::optional<Json> digits = {};
+  std::optional<HardResult> hard = {};
+  std::optional<DigitsResult> digits = {};
   std::optional<PaperValidation> paper = {};
   Headline headline = {};
 };
 Json to_json(const Page& page);
+
+/// on_page: the scene with the cells of the page's answer.
+SceneDescription describe(const solver::Scene& scene, const solver::Scene& on_page,
+                          const std::filesystem::path& file);
 
 }  // namespace slipstick::convergence

@@ -10,7 +10,7 @@
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
@@ -65,24 +65,6 @@ std::vector<Contender> contenders(const solver::Scene& scene, Index finest, cons
   return all;
 }
 
-/// The results in the order of the runs. A scene that cannot be read gives a refused result.
-std::vector<Json> run_or_refuse(const std::vector<RunSpec>& runs, const ProcessPool& pool) {
-  std::vector<Json> results(runs.size());
-  std::vector<PreparedRun> prepared;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    try {
-      prepared.push_back(prepare_run(runs[i]));
-      places.push_back(i);
-    } catch (const solver::InputError& error) {
-      results[i] = to_json(not_computed(RunStatus::refused, error.what(), runs[i]));
-    }
-  }
-  std::vector<Json> solved = to_json(pool.run_prepared(prepared));
-  for (std::size_t k = 0; k < solved.size(); ++k) results[places[k]] = std::move(solved[k]);
-  return results;
-}
-
 std::string word(const Json& result, const char* key) { return result.value(key, ""); }
 
 /// The error of an answer of another program, by the first number that it has.
@@ -132,7 +114,7 @@ Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const s
       }
     }
   }
-  const std::vector<Json> results = run_or_refuse(runs, pool);
+  const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& result = results[i];
     const std::string why = is_failed(result) ? word(result, "message") : "not a number";
@@ -158,7 +140,7 @@ std::vector<PageProgram> answers_of_programs(const RunSpec& base, const solver::
       rows.push_back({.name = each.name, .cells = cells});
     }
   }
-  const std::vector<Json> results = run_or_refuse(runs, pool);
+  const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& result = results[i];
     PageProgram& row = rows[i];
@@ -193,7 +175,7 @@ OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& sce
       }
     }
   }
-  const std::vector<Json> results = run_or_refuse(runs, pool);
+  const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
   Json families;
   auto result = results.begin();
   for (const char* kind : kKinds) {

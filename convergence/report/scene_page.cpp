@@ -9,15 +9,14 @@
 #include <limits>
 
 #include "convergence/check/check.hpp"
-#include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/report/page.hpp"
 #include "convergence/report/scene_cost.hpp"
-#include "convergence/report/scene_description.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
@@ -173,8 +172,8 @@ void add_costs(Page& page, const PageScene& at, const Reference& reference,
 }
 
 /// Hard variants of the scene, by this program or by another one.
-Json hard_variants(const PageScene& at, const Json& answer, const std::vector<BesideMethod>& programs,
-                   const ProcessPool& pool) {
+HardResult hard_variants(const PageScene& at, const Json& answer, const std::vector<BesideMethod>& programs,
+                         const ProcessPool& pool) {
   HardOptions options{.variants = at.own, .finer_meshes = at.own && at.size.finer_meshes};
   options.methods = programs;
   if (!at.own) {
@@ -182,7 +181,7 @@ Json hard_variants(const PageScene& at, const Json& answer, const std::vector<Be
     options.methods = {{name, program_override(at.scene.solver.program), true}};
   }
   const RunSpec base = at.own ? at.base : changed(at.base, {kNoProgram});
-  return to_json(run_hard_cases(hard_cases(base, at.scene, at.meshes), options, pool));
+  return run_hard_cases(hard_cases(base, at.scene, at.meshes), options, pool);
 }
 
 }  // namespace
@@ -268,8 +267,8 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
     findings.push_back(own ? judge_hard(*page.hard, "Hard variants") : judge_hard_beside(*page.hard));
   }
   if (own) {
-    page.digits = to_json(
-        rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool));
+    page.digits =
+        rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool);
   }
   if (request.validation) {
     page.paper = validate(*request.validation, folder, pool);

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "convergence/hard/hard_run.hpp"
 #include "convergence/report/page.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/results/markup.hpp"

@@ -8,7 +8,7 @@
 
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/report/scene_numbers.hpp"
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solution.hpp"
@@ -131,12 +131,9 @@ void compare(const Json& now, const Json& before, const std::string& where, std:
 
 std::string text_of(const Json& object, const char* key) { return object.value(key, ""); }
 
-/// The number of cases with a verdict.
-int cases(const Json& counts, const char* verdict) { return counts.value(verdict, 0); }
-
-/// "; family case: reason" of a row of hard cases.
-std::string case_text(const Json& row, const std::string& reason) {
-  return fmt::format("; {} {}: {}", text_of(row, "family"), text_of(row, "case"), reason);
+/// "; family case: reason" of a hard case.
+std::string case_text(const HardCase& made, const std::string& reason) {
+  return fmt::format("; {} {}: {}", made.family, made.name, reason);
 }
 
 }  // namespace
@@ -178,17 +175,15 @@ Finding judge_order(const StudyResult& study, const std::string& number, const s
   return open("there is no study of meshes with it");
 }
 
-Finding judge_hard(const Json& hard, const std::string& what) {
-  const Json& counts = hard.at("counts");
-  const Json& rows = hard.at("rows");
-  const int wrong = cases(counts, "wrong");
-  const int not_converged = cases(counts, "not_converged");
-  std::string line =
-      fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
-                  cases(counts, "certified"), rows.size(), cases(counts, "refused"), not_converged, wrong);
-  for (const Json& row : rows) {
-    const std::string verdict = text_of(row, "verdict");
-    if (verdict == "wrong" || verdict == "not_converged") line += case_text(row, text_of(row, "reason"));
+Finding judge_hard(const HardResult& hard, const std::string& what) {
+  const std::size_t wrong = hard.count(HardVerdict::wrong);
+  const std::size_t not_converged = hard.count(HardVerdict::not_converged);
+  std::string line = fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
+                                 hard.count(HardVerdict::certified), hard.rows.size(),
+                                 hard.count(HardVerdict::refused), not_converged, wrong);
+  for (const HardRow& row : hard.rows) {
+    if (row.judged.verdict == HardVerdict::wrong || row.judged.verdict == HardVerdict::not_converged)
+      line += case_text(row.hard, row.judged.reason);
   }
   return {what, line, shown(wrong == 0 && not_converged == 0)};
 }
@@ -208,21 +203,17 @@ Finding judge_pressure(const Json& answer) {
           shown(std::abs(open) <= kOpenUnderPressure)};
 }
 
-Finding judge_hard_beside(const Json& hard) {
-  const auto method = hard.at("methods").begin();
-  const Json& counts = method.value();
-  const Json& rows = hard.at("rows");
-  const int other = cases(counts, "other_direction") + cases(counts, "other_answer");
+Finding judge_hard_beside(const HardResult& hard) {
+  const auto [agree, refuse, open, direction, answer] = hard.method_counts(0);
   std::string line = fmt::format(
       "{} of {} agree with this program's, {} refused, {} not converged or failed, {} are other answers",
-      cases(counts, "agrees"), rows.size(), cases(counts, "refused"), cases(counts, "not_converged"), other);
-  for (const Json& row : rows) {
-    const Json& found = row.at("methods").at(method.key());
-    const std::string verdict = text_of(found, "verdict");
-    if (verdict == "other_direction" || verdict == "other_answer")
-      line += case_text(row, text_of(found, "reason"));
+      agree, hard.rows.size(), refuse, open, direction + answer);
+  for (const HardRow& row : hard.rows) {
+    const ComparedAnswer& found = row.methods.front().second;
+    if (found.verdict == MethodVerdict::other_direction || found.verdict == MethodVerdict::other_answer)
+      line += case_text(row.hard, found.reason);
   }
-  return {"Hard variants", line, shown(other == 0)};
+  return {"Hard variants", line, shown(direction + answer == 0)};
 }
 
 Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string& number) {
@@ -259,9 +250,9 @@ std::vector<Finding> judge_validation(const PaperValidation& paper) {
 Headline headline_of(std::vector<Finding> findings, const Page& page) {
   Headline headline{.findings = std::move(findings), .commit = text_of(page.provenance, "commit")};
   Json& counts = headline.counts;
-  if (page.hard) counts.update(Json{{"hard", page.hard->at("counts")}});
+  if (page.hard) counts.update(Json{{"hard", counts_json(*page.hard)}});
   if (page.paper) {
-    counts.update(Json{{"hard_scenes", page.paper->hard.at("counts")}});
+    counts.update(Json{{"hard_scenes", counts_json(page.paper->hard)}});
     if (page.paper->gates) {
       counts.update(Json{{"gates", counts_json(*page.paper->gates)}});
     } else {

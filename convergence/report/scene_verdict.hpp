@@ -16,7 +16,7 @@ Finding judge_certificate(const Json& answer);
 /// hard variants against this program's answers.
 Finding judge_check(const Json& answer, const Json& check);
 Finding judge_pressure(const Json& answer);
-Finding judge_hard_beside(const Json& hard);
+Finding judge_hard_beside(const HardResult& hard);
 
 /// The error of the number by which answers are compared; open from solver::kPoorlyResolved on.
 Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string& number);
@@ -29,7 +29,7 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
 Finding judge_order(const StudyResult& study, const std::string& number, const std::string& words);
 
 /// No hard case is wrong or unconverged. what: title of the cases, as "Hard variants".
-Finding judge_hard(const Json& hard, const std::string& what);
+Finding judge_hard(const HardResult& hard, const std::string& what);
 
 /// Gates hold, unless they are omitted; no hard case is wrong; `check` finds the known verdicts of fields of
 /// other programs; published numbers agree.

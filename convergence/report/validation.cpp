@@ -16,9 +16,8 @@
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/report/errata.hpp"
 #include "convergence/report/exact_curves.hpp"
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/failed_runs.hpp"
 
 namespace slipstick::convergence {
@@ -202,15 +201,15 @@ std::vector<Judgement> literature(const fs::path& folder, bool studies, const Pr
 }
 
 /// The hard cases, or an even part of them, by each method.
-Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& pool) {
+HardResult hard_results(const fs::path& folder, std::size_t step, const ProcessPool& pool) {
   std::vector<HardCase> all;
   for (const fs::path& file : settings_files(folder)) {
     std::ranges::move(read_hard_cases(file), std::back_inserter(all));
   }
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return to_json(run_hard_cases(
-      shown, {.variants = false, .finer_meshes = false, .methods = {read_beside_method("paper")}}, pool));
+  return run_hard_cases(
+      shown, {.variants = false, .finer_meshes = false, .methods = {read_beside_method("paper")}}, pool);
 }
 
 /// A field of check/fields/, at 0.9 of the limit moment. twist: rad, as the program reports it.

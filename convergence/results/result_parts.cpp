@@ -2,10 +2,64 @@
 
 #include <fmt/core.h>
 
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace slipstick::convergence {
+namespace {
+
+bool follow(const Json& at, std::string_view rest, FoundQuantity& found);
+
+bool follow_key(const Json& at, std::string_view rest, FoundQuantity& found) {
+  for (const auto& [key, child] : at.items()) {
+    if (!rest.starts_with(key)) continue;
+    std::string_view below = rest.substr(key.size());
+    if (!below.empty() && below.front() != '.' && below.front() != '[') continue;
+    if (child.is_null()) found.reason = at.value(key + "_reason", "");
+    if (below.starts_with('.')) below.remove_prefix(1);
+    if (follow(child, below, found)) return true;
+  }
+  return false;
+}
+
+bool follow_index(const Json& at, std::string_view rest, FoundQuantity& found) {
+  const std::size_t close = rest.find(']');
+  if (!rest.starts_with('[') || close == std::string_view::npos) return false;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(rest.data() + 1, rest.data() + close, index);
+  if (error != std::errc() || end != rest.data() + close || index >= at.size()) return false;
+  std::string_view below = rest.substr(close + 1);
+  if (below.starts_with('.')) below.remove_prefix(1);
+  return follow(at[index], below, found);
+}
+
+bool follow(const Json& at, std::string_view rest, FoundQuantity& found) {
+  if (rest.empty()) {
+    found.value = &at;
+    return true;
+  }
+  found.within.push_back(&at);
+  if (at.is_object() && follow_key(at, rest, found)) return true;
+  if (at.is_array() && follow_index(at, rest, found)) return true;
+  found.within.pop_back();
+  return false;
+}
+
+void collect(const Json& at, const std::string& path, std::vector<std::string>& paths) {
+  if (!at.is_structured()) paths.push_back(path);
+  for (std::size_t i = 0; at.is_array() && i < at.size(); ++i) {
+    collect(at[i], fmt::format("{}[{}]", path, i), paths);
+  }
+  if (!at.is_object()) return;
+  for (const auto& [key, child] : at.items()) {
+    collect(child, path.empty() ? key : fmt::format("{}.{}", path, key), paths);
+  }
+}
+
+}  // namespace
+
 void set_missing(Json& object, const std::string& key, const std::string& reason) {
   object[key] = nullptr;
   object[key + "_reason"] = reason;
@@ -52,6 +106,36 @@ std::string percent_text(const Json& part) { return percent_text(number_of(part)
 
 std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);
+}
+
+FoundQuantity find_quantity(const Json& result, const std::string& path) {
+  FoundQuantity found;
+  if (!path.empty()) follow(result, path, found);
+  return found;
+}
+
+double number_at(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  return found.value != nullptr && found.value->is_number() ? found.value->get<double>() : NAN;
+}
+
+double size_at(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  if (found.value == nullptr) return std::nan("");
+  const Json& value = *found.value;
+  if (value.is_array() && value.size() == 2)
+    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  return value.is_number() ? std::abs(value.get<double>()) : std::nan("");
+}
+
+double seconds_of(const Json& result) {
+  return number_at(result, result.contains("history") ? "history.seconds" : "seconds.total");
+}
+
+std::vector<std::string> quantity_paths(const Json& result) {
+  std::vector<std::string> paths;
+  collect(result, "", paths);
+  return paths;
 }
 
 }  // namespace slipstick::convergence

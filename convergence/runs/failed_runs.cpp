@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
 

@@ -3,16 +3,133 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/runs/result_cache.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/scene/shape_kind.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {
+
+using solver::Scene;
+using solver::Shape;
+using solver::Surface;
+
+constexpr solver::Index kWiderBy = 4;
+constexpr double kMillimetres = 1e3;
+
+void reverse(solver::TorsionLoad& torsion) {
+  std::visit([](auto& load) { load.value = -load.value; }, torsion);
+}
+
+void mirror(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    surface.at[1] = -surface.at[1];
+    surface.angle = -surface.angle;
+  }
+  for (solver::Step& step : scene.steps) {
+    reverse(step.torsion);
+    step.force[1] = -step.force[1];
+    if (step.displacement) (*step.displacement)[1] = -(*step.displacement)[1];
+  }
+}
+
+std::array<double, 2> turned(const std::array<double, 2>& vector) { return {-vector[1], vector[0]}; }
+
+void turn(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    surface.at = turned(surface.at);
+    surface.angle += std::numbers::pi / 2.0;
+  }
+  for (solver::Step& step : scene.steps) {
+    step.force = turned(step.force);
+    if (step.displacement) step.displacement = turned(*step.displacement);
+  }
+  std::swap(scene.grid.cells[0], scene.grid.cells[1]);
+  if (scene.grid.extent) std::swap((*scene.grid.extent)[0], (*scene.grid.extent)[1]);
+}
+
+void shift(Scene& scene) {
+  if (!scene.grid.extent) throw std::invalid_argument("a shifted scene needs its extent");
+  std::array<double, 2> cell{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    cell[i] = (*scene.grid.extent)[i] / static_cast<double>(scene.grid.cells[i]);
+    scene.grid.cells[i] += 2 * kWiderBy;
+    (*scene.grid.extent)[i] = cell[i] * static_cast<double>(scene.grid.cells[i]);
+  }
+  for (Surface& surface : scene.surfaces) {
+    surface.at[0] += 2.0 * cell[0];
+    surface.at[1] -= cell[1];
+  }
+}
+
+/// Forces stay in N: stresses are in N/mm^2, moments in N mm.
+void measure_in_millimetres(Scene& scene) {
+  constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
+  for (solver::Material* const body : {&scene.upper, &scene.lower}) {
+    body->young_modulus *= of_stress;
+    if (!body->coating) continue;
+    body->coating->young_modulus *= of_stress;
+    body->coating->thickness *= kMillimetres;
+  }
+  scene.contact.friction.shear_strength *= of_stress;
+  if (scene.contact.friction.kind == solver::FrictionKind::power)
+    scene.contact.friction.coefficient *= std::pow(of_stress, 1.0 - scene.contact.friction.exponent);
+  for (std::size_t i = 0; i < scene.layer.values.size(); ++i) {
+    const solver::LawParameter& parameter = scene.layer.kind->parameters[i];
+    scene.layer.values[i] *=
+        std::pow(kMillimetres, parameter.of_length) * std::pow(of_stress, parameter.of_stress);
+  }
+  for (Surface& s : scene.surfaces) {
+    for (double* const length : solver::lengths(s)) *length *= kMillimetres;
+    s.coefficient *= std::pow(kMillimetres, 1.0 - s.exponent);
+    s.map.heights *= kMillimetres;
+  }
+  for (solver::Step& step : scene.steps) {
+    if (auto* const moment = std::get_if<solver::Moment>(&step.torsion)) moment->value *= kMillimetres;
+    if (!step.displacement) continue;
+    for (double& along : *step.displacement) along *= kMillimetres;
+  }
+  if (scene.grid.extent) {
+    for (double& side : *scene.grid.extent) side *= kMillimetres;
+  }
+}
+
+/// Swapping the bodies reverses all loads.
+void exchange(Scene& scene) {
+  std::swap(scene.upper, scene.lower);
+  for (solver::Step& step : scene.steps) {
+    reverse(step.torsion);
+    for (double& along : step.force) along = -along;
+    if (!step.displacement) continue;
+    for (double& along : *step.displacement) along = -along;
+  }
+}
+
+void use_two_threads(Scene& scene) { scene.solver.threads = 2; }
+
+struct Transformation {
+  Variant variant;
+  const char* word;
+  void (*apply)(Scene&);
+};
+constexpr std::array kTransformations{
+    Transformation{Variant::mirrored, "mirrored", mirror},
+    Transformation{Variant::turned, "turned", turn},
+    Transformation{Variant::shifted, "shifted", shift},
+    Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
+    Transformation{Variant::exchanged, "exchanged", exchange},
+    Transformation{Variant::two_threads, "two_threads", use_two_threads}};
+static_assert(kTransformations.size() == kVariants.size());
 
 /// Bytes of a file that stands in a key as it is; of a larger one, a height map or a program, its checksum
 /// does.
@@ -33,6 +150,47 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
 }
 
 }  // namespace
+
+std::string to_string(Variant variant) {
+  for (const Transformation& each : kTransformations) {
+    if (each.variant == variant) return each.word;
+  }
+  return "none";
+}
+
+Variant variant_of(const std::string& word) {
+  for (const Transformation& each : kTransformations) {
+    if (each.word == word) return each.variant;
+  }
+  if (word == to_string(Variant::none)) return Variant::none;
+  throw std::invalid_argument(word + " is no variant");
+}
+
+std::string why_not(const Scene& scene, Variant variant) {
+  if (variant == Variant::none || variant == Variant::two_threads) return "";
+  if (scene.contact.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (variant == Variant::exchanged) return "";
+  if (!scene.contact.friction.map.empty() && variant != Variant::in_other_units)
+    return "the friction is read on the grid's own axes";
+  if (variant == Variant::shifted && std::ranges::any_of(scene.steps, solver::brings_translation))
+    return "moments are about the origin";
+  if (variant == Variant::shifted && scene.contact.pressure != solver::PressureModel::solved) {
+    return "the given pressure stands at the origin";
+  }
+  for (const Surface& surface : scene.surfaces) {
+    const bool drawn = surface.shape == Shape::roughness || surface.shape == Shape::height_map;
+    if (drawn && variant != Variant::in_other_units) return "the surface is drawn or read on its own axes";
+    if (surface.shape == Shape::height_map) return "the surface is read from a file";
+  }
+  return "";
+}
+
+Scene transformed(Scene scene, Variant variant) {
+  for (const Transformation& each : kTransformations) {
+    if (each.variant == variant) each.apply(scene);
+  }
+  return scene;
+}
 
 RunSpec changed(RunSpec run, const std::vector<std::string>& overrides) {
   run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());

@@ -1,12 +1,48 @@
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include "convergence/results/result_parts.hpp"
-#include "convergence/studies/study_plan.hpp"
+#include "convergence/runs/process_pool.hpp"
 #include "convergence/studies/study_result.hpp"
+#include "convergence/studies/study_run.hpp"
 
 namespace slipstick::convergence {
+
+/// The parts of the error of one result: observed = discretisation + iteration. rounding and reference are
+/// bounds of the error of `discretisation`.
+struct Budget {
+  double observed = 0.0;        ///< signed
+  double discretisation = 0.0;  ///< signed: error of the converged iteration
+  double iteration = 0.0;       ///< signed: error by stopping at the tolerance
+  double rounding = 0.0;        ///< change under directed rounding
+  double reference = 0.0;       ///< uncertainty of the exact answer
+};
+
+/// A run, the same to a hundredth of its tolerance, and this one rounded upward and downward.
+struct BudgetRuns {
+  RunSpec observed;
+  RunSpec tightened;
+  std::array<RunSpec, 2> rounded;
+};
+
+/// Ratio of the tolerances of `tightened` and `observed`. The iteration error of `tightened` is a hundredth
+/// of the one of `observed`, or a tenth where the error is proportional to the root of the tolerance.
+inline constexpr double kTightening = 1e-2;
+
+BudgetRuns budget_runs(const RunSpec& observed, double tolerance);
+
+/// The parts of an error, a path into the results. A part is NaN if a result for it has no number.
+Budget split_error(const std::string& quantity, const Json& observed, const Json& tightened,
+                   const std::vector<Json>& rounded);
+
+/// Solves all runs and splits the error.
+Budget error_budget(const PreparedRun& run, const std::string& quantity, const ProcessPool& pool);
+
+/// The name of the largest part.
+std::string largest_part(const Budget& budget);
 
 /// The results on one mesh, to the tolerance of its series.
 struct MeshResults {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
-#include "convergence/results/quantity.hpp"
 #include "convergence/results/record_text.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"

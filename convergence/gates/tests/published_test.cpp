@@ -1,6 +1,6 @@
 // Gates on published numbers.
 
-#include "convergence/gates/published.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <gmock/gmock.h>
 

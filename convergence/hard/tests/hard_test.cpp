@@ -8,7 +8,7 @@
 
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/hard/hard_run.hpp"
-#include "convergence/runs/variant.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/system/run_program.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"

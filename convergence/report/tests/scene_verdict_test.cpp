@@ -19,11 +19,17 @@ Judgement gate(const char* id, Outcome outcome, double factor) {
   return judgement;
 }
 
+void set_verdict(PaperValidation& paper, std::size_t row, HardVerdict verdict) {
+  paper.hard.rows[row].hard = {.family = "f", .why = "", .name = "c", .run = {}};
+  paper.hard.rows[row].judged = {verdict, "why", {}};
+}
+
 /// A made validation in which everything holds.
 PaperValidation paper() {
   PaperValidation found;
-  found.hard = {{"rows", Json::array_t(3, Json{{"verdict", "certified"}})},
-                {"counts", {{"certified", 2}, {"refused", 1}, {"not_converged", 0}, {"wrong", 0}}}};
+  found.hard.rows.resize(3);
+  for (const std::size_t i : {0U, 1U, 2U})
+    set_verdict(found, i, i < 2 ? HardVerdict::certified : HardVerdict::refused);
   found.peers = {{.program = "P", .expected = "good", .verdict = "good"},
                  {.program = "Q", .expected = "bad", .verdict = "bad"}};
   found.gates = {gate("wide", Outcome::passed, 0.1), gate("known", Outcome::failed_as_expected, 30.0),
@@ -57,11 +63,10 @@ TEST(Headline, IsGoodWhereEverythingHolds) {
 }
 
 TEST(Headline, IsBadWhereAnythingFails) {
-  for (const char* count : {"wrong", "not_converged"}) {
+  for (const HardVerdict verdict : {HardVerdict::wrong, HardVerdict::not_converged}) {
     PaperValidation changed = paper();
-    changed.hard["counts"][count] = 1;
-    changed.hard["rows"][1] = {{"family", "f"}, {"case", "c"}, {"verdict", count}, {"reason", "why"}};
-    EXPECT_EQ(headline(changed).verdict(), "bad") << count;
+    set_verdict(changed, 1, verdict);
+    EXPECT_EQ(headline(changed).verdict(), "bad") << to_string(verdict);
     EXPECT_TRUE(says(headline(changed), "f c: why"));
   }
   PaperValidation gates = paper();
@@ -98,7 +103,7 @@ TEST(HeadlineChanges, IgnoreDifferencesOfRounding) {
 
 TEST(HeadlineChanges, NameEachDifference) {
   PaperValidation other = paper();
-  other.hard["counts"]["certified"] = 1;
+  other.hard.rows.erase(other.hard.rows.begin());
   EXPECT_EQ(changes(headline(other, 2e-5), to_json(headline(paper()))),
             (std::vector<std::string>{"hard scenes certified: 2 before, 1 now",
                                       "twist angle: 1.00e-05 before, 2.00e-05 now"}));
@@ -115,7 +120,7 @@ TEST(HeadlineChanges, NameAPartThatOneOfThemOmits) {
 /// The same command twice keeps the changes that the first one found.
 TEST(HeadlineChanges, StayWhereNothingMoreHasChanged) {
   PaperValidation later = paper();
-  later.hard["counts"]["certified"] = 3;
+  later.hard.rows.push_back(later.hard.rows.front());
   const Headline first = with_changes(headline(paper()), nullptr);
   EXPECT_EQ(first.since, "");
   const Headline second = with_changes(headline(later, 1e-5, "def"), to_json(first));
@@ -210,7 +215,8 @@ TEST(HeadlineText, HasTheVerdictAndAFewChanges) {
   before["numbers"]["twist_angle"] = 1.0;
   for (const char* key : {"certified", "refused"}) before["counts"]["hard_scenes"][key] = 7;
   PaperValidation now = paper();
-  now.hard["counts"]["wrong"] = 1;
+  now.hard.rows.push_back({});
+  set_verdict(now, 3, HardVerdict::wrong);
   const std::string text = headline_text(with_changes(headline(now), before));
   EXPECT_EQ(text.rfind("NOT all is well\n", 0), 0U);
   // Verdict, check, three counts and a number differ.

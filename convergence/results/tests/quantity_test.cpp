@@ -1,4 +1,4 @@
-#include "convergence/results/quantity.hpp"
+#include "convergence/results/result_parts.hpp"
 
 #include <gmock/gmock.h>
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/studies/budget.hpp"
 
 namespace slipstick::convergence {
 namespace {
