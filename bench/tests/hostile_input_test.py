@@ -124,6 +124,8 @@ DAMAGES = [
         ("[[gate]]", "[[gate]", ":1"))),
     ("gates.toml", 'gate = "a"\n', ("gate = ", "[[gate]]")),
     ("cases.toml", changed(CASES, "why", "whi"), ("why",)),
+    ("cases.toml", "\n", ("[[family]]",)),
+    ("cases.toml", CASES + "speed = 3\n", ("speed",)),
     ("cases.toml", changed(CASES, "[0.1, 0.2]", "[]"), ("values = []", "at least one")),
     *(("runs.jsonl", RUNS + changed(RUNS, old, new), (":2", *says)) for old, new, *says in (
         ('{"scene', '["scene', "is not JSON"),

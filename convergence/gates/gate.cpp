@@ -12,7 +12,7 @@
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"
 

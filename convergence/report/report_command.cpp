@@ -14,7 +14,7 @@
 #include "convergence/report/validation.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"

@@ -11,7 +11,6 @@
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/input_error.hpp"

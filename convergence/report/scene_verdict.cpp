@@ -9,7 +9,7 @@
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solution.hpp"
 

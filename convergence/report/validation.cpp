@@ -18,7 +18,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {
 namespace {

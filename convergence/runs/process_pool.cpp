@@ -15,7 +15,7 @@
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/worker.hpp"

@@ -11,7 +11,7 @@
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/solution_fields.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/run_list.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"

@@ -11,7 +11,7 @@
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {

@@ -10,7 +10,7 @@
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/order.hpp"
 #include "convergence/results/solve_record.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/grid/grid.hpp"
 
 /// The result of a study as a value: docs/schema/study.schema.json has the same names.

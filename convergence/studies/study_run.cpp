@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study_judgement.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"

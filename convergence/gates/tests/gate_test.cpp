@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "convergence/gates/tests/made_gates.hpp"
-#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -154,14 +153,11 @@ TEST(Gate, BoundTextHasEveryDigitOfTheBound) {
   EXPECT_THAT(text(below("x", 2e-5)), HasSubstr("2e-05"));
 }
 
-TEST(Gate, RelativeToAnotherResultWithinAPartOfIt) {
+// program_gate_test.py holds numbers to those of other results.
+TEST(Gate, RelativeFactorIsThePartOfTheAllowedDifference) {
   Gate gate = gate_on("x");
   gate.bound = RelativeTo{"other.json", 0.01};
-  const Json other = solve_with("x", -2.0);
-  EXPECT_EQ(judge_relative(gate, solve_with("x", -2.01), other).outcome, Outcome::passed);
-  EXPECT_NEAR(judge_relative(gate, solve_with("x", -2.03), other).factor, 1.5, 1e-9);
-  EXPECT_THROW(judge_relative(gate, solve_with("x", 1.0), solve_with("x", 0.0)), solver::InputError);
-  EXPECT_THROW(judge_relative(gate, solve_with("x", 1.0), solve_with("y", 1.0)), solver::InputError);
+  EXPECT_NEAR(judge_relative(gate, solve_with("x", -2.03), solve_with("x", -2.0)).factor, 1.5, 1e-9);
 }
 
 TEST(Gate, ExpectedFailureMustFail) {

@@ -11,7 +11,6 @@
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/system/run_program.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
@@ -51,17 +50,6 @@ TEST_F(HardFile, VariesItsKeysInAllCombinations) {
   EXPECT_EQ(names.size(), 4U);
   EXPECT_THAT(cases[1].run.overrides,
               ElementsAre(HasSubstr("grid.cells"), HasSubstr("contact.friction=0.1"), HasSubstr("paper")));
-}
-
-TEST_F(HardFile, NamesWhatIsWrong) {
-  const auto refused = [&](const std::string& text, const auto& message) {
-    const fs::path file = write(text);
-    EXPECT_THAT([&] { read_hard_cases(file); }, ThrowsMessage<solver::InputError>(message)) << text;
-  };
-  refused("", AllOf(HasSubstr("families.toml"), HasSubstr("[[family]]")));
-  refused("[[family]]\nname = 'a'\n", HasSubstr("why"));
-  refused(family("[[family.vary]]\nkey = 'a'\nvalues = []\n"), HasSubstr("values"));
-  refused(family("speed = 3\n"), HasSubstr("speed"));
 }
 
 // A mirror twice and the other side twice are the first view; so are four quarter turns, but for a full

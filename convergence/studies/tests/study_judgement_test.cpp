@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {
 namespace {
