@@ -11,13 +11,14 @@
 
 namespace slipstick::convergence {
 Provenance provenance(int threads) {
+  static const std::string cpu = processor_name();  // a file that takes long to read
   return {.version = SLIPSTICK_VERSION,
           .commit = kCommit,
           .compiler = fmt::format("{} {}", SLIPSTICK_COMPILER, __VERSION__),
           .flags = SLIPSTICK_FLAGS,
           .libraries = fmt::format("Eigen {}.{}.{}, {}, GSL {}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                                    EIGEN_MINOR_VERSION, fftw_version, GSL_VERSION),
-          .cpu = processor_name(),
+          .cpu = cpu,
           .threads = threads};
 }
 

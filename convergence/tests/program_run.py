@@ -53,6 +53,11 @@ class ProgramTest(unittest.TestCase):
     def result(self, *words, code=0):
         return json.loads(self.run_program(*words, "--json", "-", code=code))
 
+    def text_and_result(self, *words, code=0):
+        """Both of one run."""
+        text = self.run_program(*words, "--json", "both.json", code=code)
+        return text, json.loads(Path("both.json").read_text())
+
     def write(self, name, text):
         Path(name).write_text(text)
         return name

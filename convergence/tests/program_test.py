@@ -5,10 +5,17 @@ import json
 import math
 import os
 import subprocess
+import sys
 from pathlib import Path
 from unittest.mock import patch
 
 from program_run import PROGRAM, SCENES, SOURCE, ProgramTest, main
+
+sys.path.insert(0, str(SOURCE / "cmake/tests"))
+try:
+    import schemas
+except ImportError:  # without jsonschema
+    schemas = None
 
 SMALL = ("--set", "grid.cells=[24,24]")
 
@@ -172,8 +179,11 @@ class Program(ProgramTest):
 
     def test_report_draws_a_page_for_each_scene(self):
         scenes = [str(SCENES / "mindlin.toml"), str(SCENES / "honed_surface.toml")]
-        out = self.run_program("report", *scenes, "--quick", "--output", "pages", "--junit", "out.xml", "--summary", "out.md")
+        out = self.run_program("report", *scenes, "--quick", "--output", "pages", "--junit", "out.xml", "--summary", "out.md",
+                               "--json", "pages.json")
         self.assertNotIn("NOT all is well", out)
+        if schemas:
+            self.assertEqual(schemas.problem(schemas.parse(Path("pages.json").read_text()), "report"), "")
         index = Path("pages/index.html").read_text()
         for name, has, lacks in (("mindlin", "costs", "history"), ("honed_surface", "result", "costs")):
             self.assertIn(f'href="{name}/index.html"', index)
