@@ -108,14 +108,24 @@ if(SLIPSTICK_TESTS)
   slipstick_compile_unoptimised(slipstick_test_headers)
 endif()
 
-# slipstick_tests(<name> SOURCES ... LIBRARIES ...): a GoogleTest program; each case is a test of CTest. With
-# SLIPSTICK_TEST_SHARDS the program runs in that many parts, because starting it thousands of times would take minutes.
+# Compiled once for all programs of tests.
+if(SLIPSTICK_TESTS)
+  foreach(part temporary_folder replay)
+    add_library(slipstick_test_${part} OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/tests/${part}.cpp)
+    target_link_libraries(slipstick_test_${part} PRIVATE GTest::gtest)
+    slipstick_configure(slipstick_test_${part})
+    slipstick_compile_unoptimised(slipstick_test_${part})
+  endforeach()
+endif()
+
+# slipstick_tests(<name> SOURCES ... LIBRARIES ...): a GoogleTest program; each suite is a test of CTest, <name>.<suite>. Starting
+# the program for each of its cases would take a minute in all.
 function(slipstick_tests name)
   if(NOT SLIPSTICK_TESTS)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tests/temporary_folder.cpp)
+  add_executable(${name} ${ARG_SOURCES} $<TARGET_OBJECTS:slipstick_test_temporary_folder>)
   add_dependencies(tests ${name})
   target_precompile_headers(${name} REUSE_FROM slipstick_test_headers)
   # gcc 12 gives a false warning on std::string's operator+ from a precompiled header.
@@ -126,18 +136,14 @@ function(slipstick_tests name)
   slipstick_compile_by_folder(${name} "${ARG_SOURCES}")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} fmt::fmt GTest::gmock GTest::gtest_main)
-  if(SLIPSTICK_TEST_SHARDS)
-    math(EXPR last "${SLIPSTICK_TEST_SHARDS} - 1")
-    foreach(shard RANGE ${last})
-      add_test(NAME ${name}.part${shard} COMMAND ${name})
-      set_tests_properties(${name}.part${shard} PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS}
-        ENVIRONMENT "GTEST_TOTAL_SHARDS=${SLIPSTICK_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
-    endforeach()
-  else()
-    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
-  endif()
+  set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+  set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tests/suites.cmake)
+  add_custom_command(TARGET ${name} POST_BUILD BYPRODUCTS ${suites} COMMAND ${CMAKE_COMMAND}
+    -D NAME=${name} -D PROGRAM=$<TARGET_FILE:${name}> -D OUTPUT=${suites} -D TIMEOUT=${SLIPSTICK_TEST_HANGS} -P ${script})
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake
+    "if(EXISTS [==[${suites}]==])\n  include([==[${suites}]==])\nelse()\n  add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake)
 endfunction()
-include(GoogleTest)
 
 # slipstick_fuzz_target(<name> SOURCE ... LIBRARIES ...): a program <name>_fuzz from one LLVMFuzzerTestOneInput(), and a test that
 # runs it on every file of corpus/<name> in the source's folder. With SLIPSTICK_FUZZERS libFuzzer provides main().
@@ -163,7 +169,7 @@ function(slipstick_fuzz_target name)
     add_dependencies(fuzzers ${target})
     target_link_options(${target} PRIVATE -fsanitize=fuzzer)
   else()
-    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/tests/replay.cpp)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:slipstick_test_replay>)
   endif()
   add_test(NAME fuzz.${name} COMMAND ${target} -runs=0 ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/corpus/${name})
   set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
