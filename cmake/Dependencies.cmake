@@ -116,6 +116,17 @@ if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
   endif()
 endif()
 
+# Optional: computes what proven digits are compared with.
+if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
+  execute_process(COMMAND "${SLIPSTICK_PYTHON}" -c "import mpmath" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if(status EQUAL 0)
+    set(SLIPSTICK_MPMATH ON)
+  else()
+    slipstick_not_built("the test of certified digits"
+      "${SLIPSTICK_PYTHON} cannot import mpmath: install python3-mpmath (or run `make setup`)")
+  endif()
+endif()
+
 # Optional: counts instructions.
 find_program(SLIPSTICK_VALGRIND valgrind)
 mark_as_advanced(SLIPSTICK_VALGRIND)

@@ -12,8 +12,14 @@
 #include <arb.h>
 #endif
 
+#include <flint/fmpq.h>
+
 #include <concepts>
+#include <optional>
+#include <string>
 #include <utility>
+
+#include "analytic/certified/certified.hpp"
 
 /// Arb's balls as C++ values: a ball encloses a number, and whatever is computed from balls encloses what
 /// would have been computed from the numbers.
@@ -108,6 +114,33 @@ class Ball {
 
 inline Ball pi() { return made_by<Ball>(arb_const_pi, Precision::bits()); }
 
+/// A rational number, exactly.
+class Rational {
+ public:
+  Rational(slong numerator = 0, ulong denominator = 1) {
+    fmpq_init(q_);
+    fmpq_set_si(q_, numerator, denominator);
+  }
+  Rational(const Rational& other) : Rational() { fmpq_set(q_, other.q_); }
+  Rational& operator=(const Rational& other) {
+    fmpq_set(q_, other.q_);
+    return *this;
+  }
+  ~Rational() { fmpq_clear(q_); }
+  fmpq* get() { return q_; }
+  const fmpq* get() const { return q_; }
+
+  friend Rational operator-(const Rational& a, const Rational& b) {
+    return made_by<Rational>(fmpq_sub, a.q_, b.q_);
+  }
+  friend auto operator<=>(const Rational& a, const Rational& b) { return fmpq_cmp(a.q_, b.q_) <=> 0; }
+  friend bool operator==(const Rational& a, const Rational& b) { return fmpq_equal(a.q_, b.q_) != 0; }
+  Ball ball() const { return made_by<Ball>(arb_set_fmpq, q_, Precision::bits()); }
+
+ private:
+  fmpq_t q_;
+};
+
 /// A complex number in a rectangle of two balls.
 class ComplexBall {
  public:
@@ -197,5 +230,16 @@ Ball integral(const Function& f, const Ball& a, const Ball& b) {
   mag_clear(tolerance);
   return result.real();
 }
+
+// ---------------------------------------------------------------- between decimal strings and balls
+// (ball_text.cpp)
+
+/// The number that the text writes in C's decimal or hexadecimal notation, exactly. Throws std::domain_error,
+/// which calls it `name`, for other text, and for numbers but 0 outside 1e-1000..1e1000.
+Rational read_exactly(const std::string& name, const std::string& text);
+
+/// The number in the ball to this many significant digits, with a radius that includes the ball's radius and
+/// the rounding to decimal. None if this radius would exceed 0.51 of the last digit.
+std::optional<certified::Number> print_proven(const Ball& ball, int digits);
 
 }  // namespace slipstick::analytic

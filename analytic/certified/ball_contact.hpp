@@ -3,8 +3,6 @@
 #include <optional>
 
 #include "analytic/certified/ball.hpp"
-#include "analytic/certified/ball_text.hpp"
-#include "analytic/certified/certified.hpp"
 
 /// The torsional contact in balls, to the precision in force: what certified.hpp prints.
 /// Lengths over the contact radius, a = mu = G = p0 = 1.
@@ -68,8 +66,7 @@ Moment moment_at(const Law& law, const Stick& stick, const Ball& twist_integral)
 /// q/(mu p0); none if the precision is too low to separate stick from slip.
 std::optional<Ball> traction(const Law& law, const Stick& stick, const Rational& radius);
 
-/// quantity = value, beyond the onset of slip: twist or the lesser of moment_ratio (over its onset) and
-/// moment_deficit.
+/// quantity = value, of a pressure.
 struct Equation {
   Kind kind;
   Rational exponent;
@@ -77,7 +74,8 @@ struct Equation {
   Rational value;
 };
 
-/// The stick ratio that fulfils it, proven; none if the precision is too low.
+/// The stick ratio that fulfils it, proven, beyond the onset of slip: of a twist or the lesser of
+/// moment_ratio (over its onset) and moment_deficit. None if the precision is too low.
 std::optional<Stick> solve(const Equation& equation);
 
 }  // namespace slipstick::analytic::certified

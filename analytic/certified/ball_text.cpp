@@ -1,4 +1,4 @@
-#include "analytic/certified/ball_text.hpp"
+#include "analytic/certified/ball.hpp"
 
 #include <fmt/core.h>
 
@@ -69,10 +69,8 @@ slong decimal_exponent(const Ball& ball) {
   return static_cast<slong>(arf_get_si(arb_midref(log10.get()), ARF_RND_FLOOR));
 }
 
-/// digits * 10^(exponent + 1 - number of digits), as one would write it.
+/// digits * 10^(exponent + 1 - number of digits), as one would write it. No number of a contact is negative.
 std::string written(std::string digits, slong exponent) {
-  const bool negative = digits.front() == '-';
-  if (negative) digits.erase(0, 1);
   const auto count = static_cast<slong>(digits.size());
   std::string tail;
   if (exponent < -5 || exponent >= count) {
@@ -85,7 +83,7 @@ std::string written(std::string digits, slong exponent) {
   }
   const auto point = static_cast<std::size_t>(exponent) + 1;
   if (point < digits.size()) digits.insert(point, 1, '.');
-  return fmt::format("{}{}{}", negative ? "-" : "", digits, tail);
+  return digits + tail;
 }
 
 /// Hundredths of a unit, rounded up, that |ball| may be; nothing where it is more than `most`.
@@ -142,9 +140,8 @@ std::optional<certified::Number> print_proven(const Ball& ball, int digits) {
     Integer rounded;
     arf_get_fmpz(rounded.get(), arb_midref(units.get()), ARF_RND_NEAR);
     const std::string text = rounded.text();
-    const std::size_t length = text.size() - (text.front() == '-' ? 1 : 0);
-    if (length != count) {
-      exponent += length > count ? 1 : -1;
+    if (text.size() != count) {
+      exponent += text.size() > count ? 1 : -1;
       continue;
     }
     const auto error = made_by<Ball>(arb_sub_fmpz, units.get(), rounded.get(), Precision::bits());

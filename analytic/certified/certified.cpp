@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "analytic/certified/ball_contact.hpp"
-#include "analytic/certified/ball_text.hpp"
 
 namespace slipstick::analytic::certified {
 
@@ -16,11 +15,7 @@ constexpr int kMinDigits = 15;
 constexpr int kMaxDigits = 100;
 
 /// A question, checked, in exact numbers.
-struct Question {
-  Kind kind;
-  Rational exponent;
-  Quantity given;
-  Rational value;
+struct Question : Equation {
   std::vector<Rational> radii;
 };
 
@@ -82,11 +77,7 @@ Rational read_radius(Kind kind, const std::string& text) {
 
 Question read(const Profile& profile, Quantity given, const std::string& value,
               const std::vector<std::string>& radii) {
-  Question question{.kind = profile.kind,
-                    .exponent = read_exponent(profile),
-                    .given = given,
-                    .value = read_value(given, value),
-                    .radii = {}};
+  Question question{{profile.kind, read_exponent(profile), given, read_value(given, value)}, {}};
   for (const auto& radius : radii) question.radii.push_back(read_radius(profile.kind, radius));
   return question;
 }
@@ -95,26 +86,23 @@ Question read(const Profile& profile, Quantity given, const std::string& value,
 Ball load_over_onset(const Question& question, const Law& law) {
   const auto infinite = made_by<Ball>(arb_pos_inf);
   const Rational& value = question.value;
-  if (question.given == Quantity::stick_ratio || question.given == Quantity::stick_complement) {
-    const bool full = value == Rational(question.given == Quantity::stick_ratio ? 1 : 0);
+  if (question.quantity == Quantity::stick_ratio || question.quantity == Quantity::stick_complement) {
+    const bool full = value == Rational(question.quantity == Quantity::stick_ratio ? 1 : 0);
     return full ? Ball(law.punch() ? 1 : 0) : infinite;
   }
-  const Rational load = question.given == Quantity::moment_deficit ? Rational(1) - value : value;
+  const Rational load = question.quantity == Quantity::moment_deficit ? Rational(1) - value : value;
   if (load == Rational(0)) return 0;
   if (!law.punch()) return infinite;
-  return question.given == Quantity::twist ? 8 * load.ball() : load.ball() / law.onset();
+  return question.quantity == Quantity::twist ? 8 * load.ball() : load.ball() / law.onset();
 }
 
 std::optional<Stick> stick_of(const Question& question) {
   const Rational one(1);
-  if (question.given == Quantity::stick_ratio) return Stick(question.value);
-  if (question.given == Quantity::stick_complement) return Stick(one - question.value);
-  Equation equation{.kind = question.kind,
-                    .exponent = question.exponent,
-                    .quantity = question.given,
-                    .value = question.value};
-  if (question.given != Quantity::twist) {
-    const bool deficit_given = question.given == Quantity::moment_deficit;
+  if (question.quantity == Quantity::stick_ratio) return Stick(question.value);
+  if (question.quantity == Quantity::stick_complement) return Stick(one - question.value);
+  Equation equation = question;
+  if (question.quantity != Quantity::twist) {
+    const bool deficit_given = question.quantity == Quantity::moment_deficit;
     const Rational deficit = deficit_given ? question.value : one - question.value;
     // Estimate of the distance to the onset of slip or to gross slip, whichever is smaller, over the distance
     // between the two.
@@ -130,9 +118,9 @@ std::optional<Stick> stick_of(const Question& question) {
 void set_given(const Question& question, Balls& balls) {
   const Ball value = question.value.ball();
   const Ball complement = (Rational(1) - question.value).ball();
-  if (question.given == Quantity::moment_ratio) balls.moment = {.ratio = value, .deficit = complement};
-  if (question.given == Quantity::moment_deficit) balls.moment = {.ratio = complement, .deficit = value};
-  if (question.given == Quantity::twist) balls.twist = value;
+  if (question.quantity == Quantity::moment_ratio) balls.moment = {.ratio = value, .deficit = complement};
+  if (question.quantity == Quantity::moment_deficit) balls.moment = {.ratio = complement, .deficit = value};
+  if (question.quantity == Quantity::twist) balls.twist = value;
 }
 
 /// None if the precision is too low.
@@ -201,5 +189,8 @@ State state(const Profile& profile, Quantity given, const std::string& value,
   }
   throw std::runtime_error(fmt::format("{} digits are not proven even with {} bits", digits, kMaxBits));
 }
+
+/// libslipstick_certified offers this to loaded.cpp.
+extern "C" [[gnu::visibility("default")]] decltype(state)* slipstick_certified() { return &state; }
 
 }  // namespace slipstick::analytic::certified
