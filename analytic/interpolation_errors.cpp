@@ -1,4 +1,4 @@
-#include "analytic/interpolation_errors.hpp"
+#include "analytic/tabulated_pressure.hpp"
 
 #include <fmt/core.h>
 

@@ -3,12 +3,13 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"
 
-namespace slipstick::analytic::paper {
+namespace slipstick::analytic {
 
 namespace {
 
@@ -26,6 +27,10 @@ void require(bool allowed, std::string_view name, double value, std::string_view
 
 void require_partial_slip(double stick_ratio) {
   require(stick_ratio > 0 && stick_ratio < 1, "a_s/a", stick_ratio, "0 < a_s/a < 1");
+}
+
+void require_moment(double moment, double most, std::string_view range) {
+  require(moment >= 0 && moment <= most, "M/(mu W a)", moment, range);
 }
 
 /// k of Eq. (2).
@@ -58,7 +63,12 @@ double eq1_with(double factor, double stick_ratio, double radius) {
           complete_k(k) * incomplete_e(stick_ratio, phi));
 }
 
+constexpr double kNoSlipStiffness = 16.0 / 3;  // over G a^3
+constexpr double kCap = 2.0 / 3;               // over mu W a
+
 }  // namespace
+
+namespace paper {
 
 double eq1_printed(double stick_ratio, double radius) { return eq1_with(1, stick_ratio, radius); }
 
@@ -93,9 +103,38 @@ double eq5_moment(double stick_ratio) {
 double eq6_moment_limit() { return 3 * pi / 16; }
 
 double eq7_twist(double moment) {
-  require(moment >= 0 && moment <= 2.0 / 3, "M/(mu W a)", moment, "0 <= M/(mu W a) <= 2/3");
+  require_moment(moment, 2.0 / 3, "0 <= M/(mu W a) <= 2/3");
   const double root = std::sqrt(1 - 3 * moment / 2);
   return (1 - root) * (3 - root) / 8;
 }
 
-}  // namespace slipstick::analytic::paper
+}  // namespace paper
+
+double no_slip_twist(double moment) {
+  require_moment(moment, paper::eq6_moment_limit(), "0 <= M/(mu W a) <= 3 pi/16");
+  return moment / kNoSlipStiffness;
+}
+
+double small_moment_twist(double moment) { return no_slip_twist(moment) + 9.0 / 64 * moment * moment; }
+
+double dem_moment_limit() { return kCap; }
+
+double dem_moment(double twist) {
+  require(twist >= 0, "G a^2 phi/(mu W)", twist, "0 or more");
+  return std::min(kNoSlipStiffness * twist, kCap);
+}
+
+double dem_twist(double moment) {
+  require_moment(moment, kCap, "0 <= M/(mu W a) <= 2/3");
+  return moment / kNoSlipStiffness;
+}
+
+std::span<const Approximation> approximations() {
+  static constexpr std::array kAll{Approximation{"equation_7", "Eq. (7)", paper::eq7_twist},
+                                   Approximation{"no_slip", "no slip", no_slip_twist},
+                                   Approximation{"small_moments", "small moments", small_moment_twist},
+                                   Approximation{"dem", "DEM", dem_twist}};
+  return kAll;
+}
+
+}  // namespace slipstick::analytic

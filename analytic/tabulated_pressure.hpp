@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ TabulatedProfile tabulated_profile(const std::string& name, const std::vector<Pr
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
                                    const std::vector<std::string>& places);
 
-/// The same from a CSV file, see pressure_table.cpp: a radius and a pressure a line, perhaps under the header
+/// The same from a CSV file: a radius and a pressure a line, perhaps under the header
 /// `radius,pressure`; empty lines and lines that begin with # do not count. Throws with file and line, and
 /// for a file that cannot be read.
 TabulatedProfile read_tabulated_profile(const std::string& file);
@@ -50,5 +51,17 @@ InterpolatedPressure interpolate(const std::string& name, std::vector<PressurePo
 
 /// The interpolated pressure itself, at a radius between two points.
 double interpolated_pressure(const std::vector<PressurePoint>& points, double radius);
+
+/// Estimated errors of numbers that are computed from a table of pressures. `numbers` makes them from
+/// a profile and its mean pressure, the same count each time. An estimate, no proof: of each number twice the
+/// sum, over stretches of the radius, of the largest change that another reading of the points there makes.
+/// The readings: every second point, points moved by their difference from their neighbours' prediction, with
+/// another value on the axis or another law at the edge. Sizes are added, so that errors of opposite signs do
+/// not hide each other. The estimate sees what the points show: noise and rounding of the values, a kink, an
+/// edge like any power of the distance. It does not see a feature between two points that shows at none, nor
+/// a value that is wrong together with its neighbours. Throws what `numbers` throws.
+std::vector<double> interpolation_errors(
+    const TabulatedProfile& table,
+    const std::function<std::vector<double>(const Profile&, double mean_pressure)>& numbers);
 
 }  // namespace slipstick::analytic

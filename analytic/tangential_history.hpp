@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/self_similar_indenter.hpp"
+#include "analytic/cattaneo_mindlin.hpp"
 
 /// Tangential force on an axisymmetric contact whose normal load changes too (sphere: Mindlin and
 /// Deresiewicz 1953; by superposition: Jaeger 1998). Exact as far as cattaneo_mindlin.hpp is.

@@ -8,8 +8,6 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "analytic/approximations.hpp"
-#include "analytic/interpolation_errors.hpp"
 #include "analytic/paper_equations.hpp"
 
 namespace slipstick::analytic {
@@ -62,10 +60,10 @@ AtRadii at_radii(const std::vector<double>& radii, Function f) {
 
 /// The error that a table's interpolation leaves in each number of the state. Throws where another reading of
 /// the points has no such state. Energies and the state after unloading have none.
-TableErrors table_errors(const TabulatedProfile& table, const GivenNumber& given,
+TableErrors table_errors(const TabulatedProfile& table, const StateOf& state_of,
                          const std::vector<double>& radii) {
   const auto numbers = [&](const Profile& profile, double mean_pressure) {
-    const TorsionState state = naming(given.option, [&] { return given.state(given.value, profile); });
+    const TorsionState state = state_of(profile);
     std::vector<double> list;
     for (const ExactQuantity& quantity : kExactQuantities) list.push_back(state.*quantity.member);
     for (const double r : radii) list.push_back(traction(state, r, profile));
@@ -219,10 +217,10 @@ void write_certified_row(std::ostream& out, const std::string& name, const std::
 
 }  // namespace
 
-StateAnswer answer_state(const ExactContact& contact, const GivenNumber& given,
+StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
                          const std::vector<double>& radii, const std::optional<double>& unload_to) {
   const Profile& profile = *contact.profile.profile;
-  const TorsionState state = naming(given.option, [&] { return given.state(given.value, profile); });
+  const TorsionState state = state_of(profile);
   StateAnswer answer{
       .contact = contact,
       .numbers = {state, at_radii(radii, [&](double r) { return traction(state, r, profile); }),
@@ -236,7 +234,7 @@ StateAnswer answer_state(const ExactContact& contact, const GivenNumber& given,
     answer.unloaded = cycle_point(history, radii);
   }
   if (contact.profile.table) try {
-      answer.errors = table_errors(*contact.profile.table, given, radii);
+      answer.errors = table_errors(*contact.profile.table, state_of, radii);
     } catch (const std::exception& failure) {
       answer.errors_missing =
           fmt::format("a pressure that fits the points as well has no such state: {}", failure.what());

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -56,22 +56,8 @@ struct ExactContact {
   std::optional<Units> units;
 };
 
-/// The number that names a state, and its option.
-struct GivenNumber {
-  const char* option;
-  double value;
-  TorsionState (*state)(double, const Profile&);
-};
-
-/// An error of range or form, with the option that brought the value.
-template <class Function>
-auto naming(const std::string& option, Function function) {
-  try {
-    return function();
-  } catch (const std::logic_error& error) {
-    throw std::domain_error(option + ": " + error.what());
-  }
-}
+/// The state that was asked for, of any profile.
+using StateOf = std::function<TorsionState(const Profile&)>;
 
 /// A number, or the reason why it is missing.
 struct Number {
@@ -130,7 +116,7 @@ struct StateAnswer {
   std::optional<OtherLaws> printed = {};
   std::vector<UnitsRow> units = {};
 };
-StateAnswer answer_state(const ExactContact& contact, const GivenNumber& given,
+StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
                          const std::vector<double>& radii, const std::optional<double>& unload_to);
 Json to_json(const StateAnswer& answer);
 void write(std::ostream& out, const StateAnswer& answer);

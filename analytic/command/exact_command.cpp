@@ -55,6 +55,16 @@ struct Options {
   std::optional<double> shear_modulus;
 };
 
+/// An error of range or form, with the option that brought the value.
+template <class Function>
+auto naming(const std::string& option, Function function) {
+  try {
+    return function();
+  } catch (const std::logic_error& error) {
+    throw std::domain_error(option + ": " + error.what());
+  }
+}
+
 double number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -124,7 +134,10 @@ int run(const Options& options, std::ostream& out, Json& result) {
   }
   const std::vector<double> at = radii(options);
   const double value = naming(from.option, [&] { return number(text); });
-  return give(answer_state(exact, {from.option, value, from.state}, at, options.unload_to), out, result);
+  const StateOf state_of = [&](const Profile& profile) {
+    return naming(from.option, [&] { return from.state(value, profile); });
+  };
+  return give(answer_state(exact, state_of, at, options.unload_to), out, result);
 }
 
 void add_state_options(CLI::App& exact, Options& options) {

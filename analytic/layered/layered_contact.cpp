@@ -1,16 +1,13 @@
 #include "analytic/layered/layered_contact.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "analytic/gsl.hpp"
 #include "analytic/layered/fredholm.hpp"
 #include "analytic/layered/layered_profile.hpp"
+#include "analytic/out_of_range.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic::layered {
@@ -20,11 +17,6 @@ using std::numbers::pi;
 
 /// Contact radius over the thickness, beyond which matrices and tables become large.
 constexpr double kThinnest = 150;
-
-void require_positive(const char* name, double value) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw std::domain_error(fmt::format("{} = {}; allowed: above 0, finite", name, value));
-}
 
 void require_resolved(double contact_radius, const Pair& pair) {
   if (!(contact_radius <= kThinnest * pair.thickness()))
@@ -146,14 +138,6 @@ LayeredContact press(Indenter indenter, double load, double radius, const Pair& 
     fine.uncertainty = std::max(fine.uncertainty, std::abs(numbers(coarse)[i] / numbers(fine)[i] - 1));
   fine.uncertainty += kRounding;
   return fine;
-}
-
-std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair) {
-  require_positive("contact radius", contact_radius);
-  require_resolved(contact_radius, pair);
-  const PiecewisePolynomial one([](double) { return 1; }, {0, 1}, Points::all);
-  return layered_profile({"coated_hertz", "peak pressure", one, 0},
-                         torsional_transform(pair, contact_radius, Points::all));
 }
 
 }  // namespace slipstick::analytic::layered

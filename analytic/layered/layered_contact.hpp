@@ -29,7 +29,4 @@ enum class Indenter { sphere, flat_punch };
 /// inside.
 LayeredContact press(Indenter indenter, double load, double radius, const Pair& pair);
 
-/// Torsion of coated bodies under Hertz's pressure on a radius a, whatever presses them; p0 is the peak.
-std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair);
-
 }  // namespace slipstick::analytic::layered

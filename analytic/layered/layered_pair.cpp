@@ -1,23 +1,17 @@
 #include "analytic/layered/layered_pair.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic::layered {
 namespace {
 
-void require(bool allowed, const char* name, double value, const char* range) {
-  if (!allowed) throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, range));
-}
-
 void require_elastic(const Elastic& material) {
   const auto& [modulus, nu] = material;
-  require(modulus > 0, "shear modulus", modulus, "above 0");
-  require(nu > -1 && nu <= 0.5, "Poisson's ratio", nu, "above -1, at most 1/2");
+  if (!(modulus > 0)) out_of_range("shear modulus", modulus, "above 0");
+  if (!(nu > -1 && nu <= 0.5)) out_of_range("Poisson's ratio", nu, "above -1, at most 1/2");
 }
 
 /// 4 exp(-2 x) (sinh(x)^2 - x^2), x >= 0.
@@ -70,7 +64,7 @@ double weighted(const std::array<Body, 2>& bodies, const std::array<double, 2>& 
 }  // namespace
 
 Pair::Pair(const Body& first, const Body& second) : bodies_{first, second} {
-  require(first.coat || second.coat, "coated bodies", 0, "1 or 2");
+  if (!first.coat && !second.coat) out_of_range("coated bodies", 0, "1 or 2");
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& [surface, coat] = bodies_[i];
     require_elastic(surface);
@@ -78,9 +72,8 @@ Pair::Pair(const Body& first, const Body& second) : bodies_{first, second} {
     normal_[i] = (1 - surface.poisson_ratio) / 2 * tangential_[i];
     if (!coat) continue;
     require_elastic(coat->base);
-    require(tangential_[i] > 0, "shear modulus of a layer", surface.shear_modulus, "finite");
-    require(coat->thickness > 0 && std::isfinite(coat->thickness), "thickness", coat->thickness,
-            "above 0, finite");
+    require_positive("shear modulus of a layer", surface.shear_modulus);
+    require_positive("thickness", coat->thickness);
   }
 }
 

@@ -1,35 +1,17 @@
 #include "analytic/paper_equations.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
-#include "analytic/gsl.hpp"
+#include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 
-namespace slipstick::analytic::paper {
+namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
-
-/// M/(mu W a) of an Eq. (1): 3 integral_0^1 q r^2 dr, stick and slip by the sine of an angle.
-double moment_of(const std::function<double(double, double)>& eq1, double c) {
-  const auto integrand = [&](double r, double dr) { return eq1(c, r) * r * r * dr; };
-  const double stick =
-      gsl::integral([&](double t) { return integrand(c * std::sin(t), c * std::cos(t)); }, 0, pi / 2);
-  const double slip = gsl::integral([&](double t) { return integrand(std::sin(t), std::cos(t)); },
-                                    std::asin(c) + 1e-15, pi / 2);
-  return 3 * (stick + slip);
-}
+using namespace paper;
 
 double error_of_eq5(double stick_ratio) {
   return std::abs(eq5_moment(stick_ratio) / from_stick_ratio(stick_ratio).moment - 1);
-}
-
-TEST(Equation1, MendedIsContinuousAtTheStickRadius) {
-  for (const double c : {0.1, 0.5, 0.8, 0.95}) EXPECT_NEAR(eq1(c, c), std::sqrt(1 - c * c), 1e-13) << c;
 }
 
 TEST(Equation1, AsPrintedJumpsByHalfPi) {
@@ -37,11 +19,6 @@ TEST(Equation1, AsPrintedJumpsByHalfPi) {
     const double outside = eq1_printed(c, std::nextafter(c, 1.0));
     EXPECT_NEAR(eq1_printed(c, c) / outside, pi / 2, 1e-12) << c;
   }
-}
-
-TEST(Equation1, MendedIntegratesToEquation5) {
-  for (const double c : {0.1, 0.3, 0.5, 0.8, 0.9})
-    EXPECT_NEAR(moment_of(eq1, c) / eq5_moment(c), 1, 1e-13) << c;
 }
 
 TEST(Equation1, MendedAgreesWithTheStableForm) {
@@ -81,17 +58,91 @@ TEST(Equation7, IsFiniteAtTheLimitWhereTheTwistIsNot) {
 }
 
 TEST(PaperEquations, RefuseWhatLiesOutside) {
-  for (const double bad : {0.0, 1.0, -0.5, 1.5, std::nan("")}) {
+  for (const double bad : {0.0, 1.0, -0.5, 1.5, kNan}) {
     EXPECT_THROW(eq1(bad, 0.1), std::domain_error) << bad;
     EXPECT_THROW(eq1_printed(bad, 0.1), std::domain_error) << bad;
     EXPECT_THROW(eq4_twist(bad), std::domain_error) << bad;
     EXPECT_THROW(eq5_moment(bad), std::domain_error) << bad;
   }
-  for (const double bad : {-0.1, 1.1, std::nan("")}) {
+  for (const double bad : {-0.1, 1.1, kNan}) {
     EXPECT_THROW(eq1(0.5, bad), std::domain_error) << bad;
     EXPECT_THROW(eq7_twist(bad), std::domain_error) << bad;
   }
 }
 
+// ---------------------------------------------------------------- other laws of the twist
+
+const double kLimit = hertz_profile().moment_limit();
+
+double error(double (*twist)(double), double moment_ratio) {
+  const auto state = from_moment_ratio(moment_ratio);
+  return twist(state.moment) / state.twist - 1;
+}
+
+/// By how much a law's error falls when a small moment is halved: 2 to its order.
+double error_ratio(double (*twist)(double)) {
+  constexpr double kSmall = 1e-3;
+  return error(twist, kSmall) / error(twist, kSmall / 2);
+}
+
+TEST(Approximations, HoldToTheirOrderInSmallMoments) {
+  EXPECT_NEAR(error_ratio(no_slip_twist), 2, 0.01);
+  EXPECT_NEAR(no_slip_twist(0.3), 0.3 / from_moment_ratio(0).tangent_stiffness, 1e-17);
+  EXPECT_NEAR(error_ratio(small_moment_twist), 4, 0.02);
+}
+
+TEST(DiscreteElements, CarryMoreThanTheContactCan) {
+  EXPECT_NEAR(dem_moment_limit() / kLimit, 32 / (9 * pi), 1e-15);
+  EXPECT_EQ(dem_moment(1), dem_moment_limit());
+  EXPECT_EQ(dem_moment(HUGE_VAL), dem_moment_limit());
+  EXPECT_GT(dem_moment(from_moment_ratio(0.999).twist) / kLimit, 1.13);
+}
+
+TEST(DiscreteElements, FollowTheirSpringUpToTheCap) {
+  for (const double moment : {0.0, 1e-9, 0.3, 0.6}) EXPECT_DOUBLE_EQ(dem_moment(dem_twist(moment)), moment);
+  EXPECT_DOUBLE_EQ(dem_twist(dem_moment_limit()), 1.0 / 8);
+  for (const double moment : {1e-3, 0.5}) EXPECT_EQ(dem_twist(moment), no_slip_twist(moment));
+}
+
+/// The table in paper_equations.hpp, in percent.
+TEST(Approximations, AreOffAsTabulated) {
+  struct Point {
+    double moment_ratio, no_slip, small_moment, eq7, dem_moment;
+  };
+  for (const auto& point : {Point{0.1, -4.5, -0.29, -0.093, 4.7},
+                            {0.5, -25.1, -8.5, -3.4, 33.5},
+                            {0.9, -56.4, -39.1, -23.6, 25.8}}) {
+    const double m = point.moment_ratio;
+    EXPECT_NEAR(100 * error(no_slip_twist, m), point.no_slip, 0.05) << m;
+    EXPECT_NEAR(100 * error(dem_twist, m), point.no_slip, 0.05) << m;
+    EXPECT_NEAR(100 * error(small_moment_twist, m), point.small_moment, m < 0.5 ? 0.005 : 0.05) << m;
+    EXPECT_NEAR(100 * error(eq7_twist, m), point.eq7, m < 0.5 ? 0.0005 : 0.05) << m;
+    const auto state = from_moment_ratio(m);
+    EXPECT_NEAR(100 * (dem_moment(state.twist) / state.moment - 1), point.dem_moment, 0.05) << m;
+  }
+  EXPECT_NEAR(100 * (dem_moment(1.0 / 8) / from_twist(1.0 / 8).moment - 1), 62, 0.5);
+}
+
+/// Slip only softens: a law that neglects some of it is too stiff.
+TEST(Approximations, AreAllTooStiff) {
+  for (const auto& law : approximations()) {
+    for (const double m : {0.01, 0.1, 0.5, 0.9, 0.9999})
+      EXPECT_LT(error(law.twist, m), 0) << law.name << ' ' << m;
+    EXPECT_EQ(law.twist(0), 0) << law.name;
+    EXPECT_NO_THROW(law.twist(kLimit)) << law.name;
+  }
+}
+
+TEST(Approximations, RefuseWhatLiesOutside) {
+  for (const auto& law : approximations())
+    for (const double bad : {-1e-300, 0.67, HUGE_VAL, kNan})
+      EXPECT_THROW(law.twist(bad), std::domain_error) << law.name << ' ' << bad;
+  for (const double beyond : {0.59, 0.66}) {
+    EXPECT_THROW(no_slip_twist(beyond), std::domain_error);
+    EXPECT_THROW(small_moment_twist(beyond), std::domain_error);
+  }
+  for (const double bad : {-1e-300, -HUGE_VAL, kNan}) EXPECT_THROW(dem_moment(bad), std::domain_error) << bad;
+}
+
 }  // namespace
-}  // namespace slipstick::analytic::paper
+}  // namespace slipstick::analytic

@@ -36,7 +36,7 @@ TEST(Superposition, AgreesWithReferences) {
     const double value = row.argument("value");
     const StickRadius c = row.text("given") == "stick_ratio" ? at(value) : before_edge(value);
     const auto near = [&](double computed, const char* name) {
-      EXPECT_LE(relative_error(computed, row.number(name)), kFewRoundings) << name << " of " << row.line();
+      EXPECT_LE(relative_error(computed, row.number(name)), kFewRoundings) << name << " of " << row.line;
     };
     near(profile->twist_integral(c), "twist_integral");
     near(profile->twist_slope(c), "twist_slope");

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "analytic/references/replay.hpp"
+#include "analytic/references/references.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {

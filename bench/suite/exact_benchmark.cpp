@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "analytic/references/replay.hpp"
+#include "analytic/references/references.hpp"
 #include "bench/suite/suite.hpp"
 
 namespace slipstick::bench {

@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "analytic/approximations.hpp"
 #include "analytic/cycle.hpp"
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"

@@ -9,6 +9,7 @@
 
 #include "analytic/cycle.hpp"
 #include "analytic/elliptic.hpp"
+#include "analytic/layered/layered_profile.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 
@@ -23,9 +24,16 @@ Pair on_base(double thickness, double base_modulus, double nu = 0.3) {
   return {Body{{1, nu}, Coat{thickness, {base_modulus, nu}}}, Body{{kInfinity, 0}}};
 }
 
+/// Torsion under Hertz's pressure on a radius of 1, whatever presses.
+std::unique_ptr<const Profile> under_hertz_pressure(const Pair& pair) {
+  const PiecewisePolynomial one([](double) { return 1; }, {0, 1}, Points::all);
+  const auto excess = [&](double k) { return pair.torsional_excess(k); };
+  return layered_profile({"hertz", "peak", one, 0}, {excess, pair.thickness(), 2, 1, Points::all});
+}
+
 /// The stiffness of full stick, over that on the layer's half-space.
 double relative_stiffness(double thickness, double base_modulus) {
-  return under_hertz_pressure(1, on_base(thickness, base_modulus))->bonded_stiffness(at(1)) * 3 / 16;
+  return under_hertz_pressure(on_base(thickness, base_modulus))->bonded_stiffness(at(1)) * 3 / 16;
 }
 
 void expect_same_torsion(const Profile& profile, const Profile& expected) {
@@ -54,7 +62,7 @@ void expect_same_torsion(const Profile& profile, const Profile& expected) {
 }
 
 TEST(LayeredContact, OfALayerLikeItsBaseIsHertzAndLubkin) {
-  expect_same_torsion(*under_hertz_pressure(2, on_base(0.4, 1)), hertz_profile());
+  expect_same_torsion(*under_hertz_pressure(on_base(0.2, 1)), hertz_profile());
   const Pair pair = on_base(0.4, 1);
   const Indentation hertz = indent_sphere(1.7, 3, pair.effective_modulus());
   const LayeredContact sphere = press(Indenter::sphere, 1.7, 3, pair);
@@ -188,7 +196,6 @@ TEST(LayeredContact, RefusesWhatIsNoSuchContact) {
     EXPECT_THROW(press(Indenter::sphere, bad, 1, pair), std::domain_error);
     EXPECT_THROW(press(Indenter::sphere, 1, bad, pair), std::domain_error);
     EXPECT_THROW(press(Indenter::flat_punch, bad, 1, pair), std::domain_error);
-    EXPECT_THROW(under_hertz_pressure(bad, pair), std::domain_error);
   }
   const auto pressed_flat = [](double h, double base) {
     return [=] { press(Indenter::flat_punch, 1, 1, on_base(h, base)); };
@@ -198,6 +205,18 @@ TEST(LayeredContact, RefusesWhatIsNoSuchContact) {
   EXPECT_THAT(pressed_flat(0.1, 0.1), ThrowsMessage<std::domain_error>(HasSubstr("slip begins inside")));
   EXPECT_THAT(pressed_flat(1e-3, 2), ThrowsMessage<std::domain_error>(HasSubstr("thickness")));
   EXPECT_THROW(press(Indenter::sphere, 1e9, 1, pair), std::domain_error);
+}
+
+TEST(LayeredPair, RefusesWhatIsNoCoatedPair) {
+  const Body coated{{1, 0.3}, Coat{1, {2, 0.3}}};
+  EXPECT_THROW(Pair(Body{{1, 0.3}}, Body{{1, 0.3}}), std::domain_error);
+  EXPECT_THROW(Pair(Body{{kInfinity, 0.3}, Coat{1, {2, 0.3}}}, coated), std::domain_error);
+  for (const double bad : {0.0, -1.0, kNan}) {
+    EXPECT_THROW(Pair(Body{{bad, 0.3}}, coated), std::domain_error);
+    EXPECT_THROW(Pair(Body{{1, 0.3}, Coat{bad, {2, 0.3}}}, coated), std::domain_error);
+    EXPECT_THROW(Pair(Body{{1, 0.3}, Coat{1, {bad, 0.3}}}, coated), std::domain_error);
+    EXPECT_THROW(Pair(Body{{1, bad - 1}}, coated), std::domain_error);
+  }
 }
 
 }  // namespace
