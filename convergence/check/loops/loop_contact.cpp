@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "analytic/paper_equations.hpp"
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/named_profile.hpp"
+#include "analytic/paper_equations.hpp"
 #include "convergence/laws/twist_law.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/law_contact.hpp"
