@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/check/check.hpp"
-#include "convergence/check/loops/check_loop.hpp"
+#include "convergence/check/loops/loop_record.hpp"
+#include "convergence/check/loops/loop_request.hpp"
 #include "convergence/programs/output_options.hpp"
+#include "convergence/programs/package_module.hpp"
+#include "convergence/results/provenance.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
@@ -40,12 +43,13 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
                                "is a loop; --twist, --discrete and --pressure-given are for a field of "
                                "tractions; allowed: without them");
     }
-    const LoopCheck check = check_loop(
-        scene, request.field,
-        {.tolerance = request.check.tolerance.value_or(kLoopTolerance), .strict = request.check.strict});
-    result = to_json(check);
-    text << loop_text(check);
-    return check.good ? 0 : 1;
+    LoopOptions options{.strict = request.check.strict};
+    if (request.check.tolerance) options.tolerance = *request.check.tolerance;
+    const ModuleAnswer answer = run_package_module("loops", loop_request(scene, request.field, options));
+    result = answer.result;
+    result["provenance"] = provenance(1);
+    text << answer.text;
+    return answer.exit_code;
   }
   const FieldCheck check = check_field(scene, request.field, request.check);
   result = to_json(check);

@@ -1,12 +1,12 @@
-#include "convergence/check/loops/check_loop.hpp"
+#include "convergence/check/loops/loop_record.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "convergence/check/loops/loop_path.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -129,8 +129,9 @@ void require_sound(const LoopRecord& loop) {
     throw InputError(file, "load or motion never changes: there is no loop to judge");
   }
   constexpr double kLargest = 1e100;  // in any unit; the fit squares values
-  for (const std::vector<double>* column : {&loop.load, &loop.motion, &loop.time}) {
-    const double size = column->empty() ? 1.0 : largest_of(*column);
+  for (const std::vector<double>* column : {&loop.load, &loop.motion, &loop.time, &loop.normal_load}) {
+    double size = column->empty() ? 1.0 : 0.0;
+    for (const double value : *column) size = std::max(size, std::abs(value));
     if (!(size > 1.0 / kLargest && size < kLargest)) {
       throw InputError(file, fmt::format("a column reaches {:g}; allowed: sizes within 1e-100..1e100", size));
     }
@@ -158,6 +159,28 @@ LoopRecord read_loop(const std::filesystem::path& file) {
           : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
   require_sound(loop);
   return loop;
+}
+
+std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
+  constexpr double kSameLoad = 0.02;  // relative difference of rows under one load
+  if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
+  std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
+  for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
+    if (std::abs(loop.normal_load[row] / groups.back().normal_load - 1.0) > kSameLoad) {
+      groups.push_back({row, row, loop.normal_load[row]});
+    }
+    groups.back().to = row + 1;
+  }
+  for (const LoadRows& group : groups) {
+    if (group.to - group.from >= kMinLoopRows) continue;
+    throw solver::InputError(
+        loop.file.string(),
+        fmt::format(
+            "rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
+            "load of its own for at least {} rows",
+            group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
+  }
+  return groups;
 }
 
 }  // namespace slipstick::convergence

@@ -1,9 +1,10 @@
-// Any text is judged as a field of tractions or as a loop, or is refused.
+// Any text is judged as a field of tractions or read as a loop, or is refused.
 
 #include <nlohmann/json.hpp>
 
 #include "convergence/check/check.hpp"
-#include "convergence/check/loops/check_loop.hpp"
+#include "convergence/check/loops/loop_record.hpp"
+#include "convergence/check/loops/loop_request.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 namespace {
@@ -30,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const auto& path = (is_json ? lists : table).write(solver::text_of(bytes, size));
   solver::read_or_refuse([&] {
     if (convergence::is_loop_file(path)) {
-      convergence::loop_text(convergence::check_loop(scene, path, {0.01}));
+      convergence::loop_request(scene, path, {});
     } else {
       convergence::check_text(convergence::check_field(scene, path));
     }

@@ -1,4 +1,4 @@
-"""drawn_loops.py PROGRAM SCENES [--count N] [--seed S] [--keep FOLDER]: draws loops of the paper's sphere, N right and N wrong,
+"""drawn_loops.py [--count N] [--seed S] [--keep FOLDER]: draws loops of the paper's sphere, N right and N wrong,
 and counts what slipstick check says of them. Laws are written here a second time (numpy; Lubkin's by quadrature), nothing of the
 program's. Fails where a right loop is called bad, where more than 1 in 20 wrong ones are called good or by a wrong name, or where
 more than 1 in 4 have no name: two laws explain them, as noisy or small loops, or none does.
@@ -6,13 +6,11 @@ A wrong loop counts as good with reason where it is no farther from the exact on
 another name counts as right where its law with its parameters is no farther from the loop than that."""
 
 import argparse
-import json
 import math
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
+import loop_requests
 import numpy as np
 
 FRICTION, LOAD, RADIUS, YOUNG, POISSON = 0.1, 1000.0, 0.018, 210e9, 0.3
@@ -301,81 +299,76 @@ def off(one, other, part=1.0):
 
 def main():
     arguments = argparse.ArgumentParser()
-    arguments.add_argument("program", type=Path)
-    arguments.add_argument("scenes", type=Path)
     arguments.add_argument("--count", type=int, default=200)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--keep", type=Path)
     options = arguments.parse_args()
     drawer = Drawer(options.seed)
-    with tempfile.TemporaryDirectory() as folder:
-        def check(table, *words):
-            file = Path(folder) / "loop.csv"
-            file.write_text("time,moment,rotation\n" + "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in table.tolist()))
-            run = subprocess.run([options.program, "check", options.scenes / "paper.toml", file, "--json", "-", *words],
-                                 capture_output=True, text=True)
-            if run.returncode not in (0, 1):
-                sys.exit(f"exit code {run.returncode}: {run.stderr}")
-            return json.loads(run.stdout), file
-        def keep(file, name):
-            if options.keep:
-                options.keep.mkdir(exist_ok=True)
-                (options.keep / f"{name}.csv").write_text(file.read_text())
-        bad = good = fair = named_wrong = unnamed = judged = 0
-        for k in range(options.count):
-            kind, amplitude, noise, table = drawer.right()
-            result, file = check(table, *(["--strict"] if k % 2 else []))
-            if result["verdict"] == "bad":
-                bad += 1
-                print(f"right {k}: {kind}, t {amplitude:.2g}, noise {noise:g}: bad: {result['why']}")
-                keep(file, f"right-{k}")
-        for k in range(options.count):
-            name, amplitude, noise, table, time, t, m, start, conventions = drawer.wrong()
-            result, file = check(table)
-            law, why = result["loads"][0].get("law"), result["why"]
-            shown = f"wrong {k}: {name}, t {amplitude:.2g}, noise {noise:g}, start {start}:"
-            if name == "unit":
-                judged += 1
-                load, motion, sign = conventions
-                notes = {1e-3: "N mm", 1e-6: "mN mm", 1e3: "kN m"}, {1e-3: "mrad", 1e-6: "urad", math.pi / 180: "degrees"}
-                wanted = [notes[0].get(load, ""), notes[1].get(motion, "")] + (["other body"] if sign < 0 else [])
-                said = " ".join(result["conventions"]) + why
-                if conventions == (1, 1, 1):
-                    judged -= 1
-                    named_wrong += result["verdict"] != "good"
-                elif off(line(t), m) <= noise / 3 and wanted[2:] == [word for word in wanted[2:] if word in said] and \
-                        (result["verdict"] == "good" or "as in another unit" in said):
-                    fair += 1  # a line has only a stiffness, which does not say which unit differs
-                    judged -= 1
-                elif not all(word in said for word in wanted):
-                    named_wrong += 1
-                    print(shown, conventions, result["verdict"], result["conventions"], why)
-                    keep(file, f"wrong-{k}")
-                continue
-            away = off(drawer.right_moments(t, start), m)
-            if result["verdict"] == "good":
-                if away <= noise:
-                    fair += 1
-                    continue
-                judged += 1
-                good += 1
-                print(shown, f"{away:.2g} off, good: {why}")
-                keep(file, f"wrong-{k}")
+    columns = ("time", "moment", "rotation")
+
+    def check(table, strict=False):
+        return loop_requests.judged(dict(zip(columns, table.T.tolist())), strict=strict)
+
+    def keep(table, name):
+        if options.keep:
+            options.keep.mkdir(exist_ok=True)
+            loop_requests.write_table(options.keep / f"{name}.csv", columns, table.tolist())
+
+    bad = good = fair = named_wrong = unnamed = judged = 0
+    for k in range(options.count):
+        kind, amplitude, noise, table = drawer.right()
+        result = check(table, strict=bool(k % 2))
+        if result["verdict"] == "bad":
+            bad += 1
+            print(f"right {k}: {kind}, t {amplitude:.2g}, noise {noise:g}: bad: {result['why']}")
+            keep(table, f"right-{k}")
+    for k in range(options.count):
+        name, amplitude, noise, table, time, t, m, start, conventions = drawer.wrong()
+        result = check(table)
+        law, why = result["loads"][0].get("law"), result["why"]
+        shown = f"wrong {k}: {name}, t {amplitude:.2g}, noise {noise:g}, start {start}:"
+        if name == "unit":
+            judged += 1
+            load, motion, sign = conventions
+            notes = {1e-3: "N mm", 1e-6: "mN mm", 1e3: "kN m"}, {1e-3: "mrad", 1e-6: "urad", math.pi / 180: "degrees"}
+            wanted = [notes[0].get(load, ""), notes[1].get(motion, "")] + (["other body"] if sign < 0 else [])
+            said = " ".join(result["conventions"]) + why
+            if conventions == (1, 1, 1):
+                judged -= 1
+                named_wrong += result["verdict"] != "good"
+            elif off(line(t), m) <= noise / 3 and wanted[2:] == [word for word in wanted[2:] if word in said] and \
+                    (result["verdict"] == "good" or "as in another unit" in said):
+                fair += 1  # a line has only a stiffness, which does not say which unit differs
+                judged -= 1
+            elif not all(word in said for word in wanted):
+                named_wrong += 1
+                print(shown, conventions, result["verdict"], result["conventions"], why)
+                keep(table, f"wrong-{k}")
+            continue
+        away = off(drawer.right_moments(t, start), m)
+        if result["verdict"] == "good":
+            if away <= noise:
+                fair += 1
                 continue
             judged += 1
-            # At one rate, to and fro, moments that follow its sign are rigid and regularised.
-            if law == name or ({law, name} == {"rigid", "regularised"} and same_rate(time, t)):
-                continue
-            if law is None:
-                unnamed += 1
-                continue
-            tried = [entry for entry in result["loads"][0]["tried"] if entry["law"] == law]
-            same = any(off(other, m, 0.98) <= max(noise / 3, 1e-6)
-                       for entry in tried for other in law_of(law, entry["parameters"], time, t, start, why))
-            if not same:
-                named_wrong += 1
-                print(shown, f"{away:.2g} off, named {law}: {why}")
-                keep(file, f"wrong-{k}")
+            good += 1
+            print(shown, f"{away:.2g} off, good: {why}")
+            keep(table, f"wrong-{k}")
+            continue
+        judged += 1
+        # At one rate, to and fro, moments that follow its sign are rigid and regularised.
+        if law == name or ({law, name} == {"rigid", "regularised"} and same_rate(time, t)):
+            continue
+        if law is None:
+            unnamed += 1
+            continue
+        tried = [entry for entry in result["loads"][0]["tried"] if entry["law"] == law]
+        same = any(off(other, m, 0.98) <= max(noise / 3, 1e-6)
+                   for entry in tried for other in law_of(law, entry["parameters"], time, t, start, why))
+        if not same:
+            named_wrong += 1
+            print(shown, f"{away:.2g} off, named {law}: {why}")
+            keep(table, f"wrong-{k}")
     print(f"{options.count} right: {bad} bad; {judged} wrong and not within their noise ({fair} within it): {good} good, "
           f"{named_wrong} with a wrong cause, {unnamed} without a name")
     sys.exit(1 if bad or 20 * good > judged or 20 * named_wrong > judged or 4 * unnamed > judged else 0)
