@@ -416,7 +416,8 @@ class Options(unittest.TestCase):
         self.assertTrue(all(re.match(r"\*|[-\d]", line) for line in texts["inp"].splitlines()), name)
         lammps_rows(texts["table"])
         if COMPILER:
-            subprocess.run([COMPILER, "-std=c99", "-Werror", "-fsyntax-only", "-xc", "-"], input=texts["h"], text=True, check=True)
+            words = [COMPILER, "-std=c99", "-Werror", "-fsyntax-only", "-xc", "-"]
+            subprocess.run(words, input=texts["h"], text=True, check=True)
 
     def test_keeps_its_inputs(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from ctypes import c_double
 from dataclasses import dataclass
 from functools import partial
-from math import cbrt, exp, hypot, inf, log, pi, tan
+from math import exp, hypot, inf, log, pi, tan
 from typing import Any, Callable, NamedTuple, Optional
 
 import numpy as np
@@ -122,7 +122,7 @@ class Curve:
 
     def touching(self, slope: float) -> State:
         """Where the curve has this slope."""
-        return self.state(stick_ratio=min(1.0, cbrt(slope / self.rest)))
+        return self.state(stick_ratio=min(1.0, (slope / self.rest)**(1 / 3)))
 
     def state_where(self, f: Callable[[State], float], low: float, high: float) -> State:
         """The state with a stick ratio between two where a function crosses zero."""
@@ -138,9 +138,9 @@ class TwistLaw:
 
     Relative errors of m and t are at most `error`, plus the effect of an ulp of the argument, where 1 - m is at least
     LAST_DEFICIT; a larger rotation carries the limit. A cycle between m and -m loses the energy 4 M phi(m) times (l - l_1)^p
-    times a polynomial, l_1 where slip begins and p the power of the smallest losses: relative errors are at most `error` however
-    little is lost (a sphere loses M^3, p = 1). After a reversal Masing's rule gives the moment, with errors up to three times
-    that of first loading."""
+    times a polynomial, l_1 where slip begins and p the power of the smallest losses: relative errors are at most `error`
+    however little is lost (a sphere loses M^3, p = 1). After a reversal Masing's rule gives the moment, with errors up to
+    three times that of first loading."""
 
     def __init__(self, curve: Curve, error: float) -> None:
         _require("--error", error, 1e-11, 1e-2)

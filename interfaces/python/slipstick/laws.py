@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import inf, nan, pi
 from pathlib import Path
 from typing import Any, Optional
@@ -42,8 +42,9 @@ class Units:
 class Law:
     """The law of a contact in all its forms, and laws of other programs that fit it best, with the errors that remain.
 
-    profile: as slipstick.exact names it. error: relative, of the polynomials. table_error, element_error: over the limit, of the
-    table, and of the elements on first loading; or a number of elements instead of their error. prefix: begins names in files.
+    profile: as slipstick.exact names it. error: relative, of the polynomials. table_error, element_error: over the limit, of
+    the table, and of the elements on first loading; or a number of elements instead of their error. prefix: begins names in
+    files.
 
     >>> law = Law("cone", error=1e-9, limit_loads=3)
     >>> law.file("law.csv").splitlines()[0]
@@ -61,7 +62,8 @@ class Law:
         self.rotation_unit, self.moment_unit = (units.rotation, units.moment) if units else (1.0, 1.0)
         self.rate_unit = self.moment_unit / self.rotation_unit
         self.limit, self.stiffness = curve.limit * self.moment_unit, STIFFNESS * self.rate_unit
-        self.jenkins = (self.elements.each * [[self.limit / self.rotation_unit, self.limit]]).tolist()  #: stiffness and slip moment of each
+        #: stiffness and slip moment of each element
+        self.jenkins = (self.elements.each * [[self.limit / self.rotation_unit, self.limit]]).tolist()
         self.programs = {"lammps": self._lammps(), "mujoco": self._mujoco(), "drake": self._drake()}
 
     def _lammps(self) -> dict[str, Any]:
@@ -84,8 +86,8 @@ class Law:
 
     def _drake(self) -> Optional[dict[str, Any]]:
         """A compliant hydroelastic sphere on a rigid half-space, whose pressure is E e, e the depth over the radius:
-        p0 (1 - (r/a_h)^2), so that the limit moment is (8/15) mu W a_h. The modulus makes it exact at the contact's load; at half
-        of that it is off, since it goes like W^(5/4), not W^(4/3)."""
+        p0 (1 - (r/a_h)^2), so that the limit moment is (8/15) mu W a_h. The modulus makes it exact at the contact's load; at
+        half of that it is off, since it goes like W^(5/4), not W^(4/3)."""
         if not self.units or self.units.sphere_radius is None:
             return None
         radius = self.limit / (8 / 15 * self.units.friction * self.units.normal_load)
@@ -114,8 +116,8 @@ class Law:
         return f"{before}{contact}: first loading and its consequences, by slipstick law.\n{before}Units: {units}."
 
     def file(self, path: str | Path) -> str:
-        """The text of a file by its ending: .csv table; .h C header; .py Python module; .table LAMMPS; .inp Abaqus; .xml MuJoCo;
-        .sdf Drake. Numbers are the scene's, SI, or dimensionless."""
+        """The text of a file by its ending: .csv table; .h C header; .py Python module; .table LAMMPS; .inp Abaqus; .xml
+        MuJoCo; .sdf Drake. Numbers are the scene's, SI, or dimensionless."""
         ending = Path(path).suffix
         if ending not in (".csv", ".h", ".py", ".table", ".inp", ".xml", ".sdf"):
             raise InputError(f"--write {path}: its ending says no format; allowed: .csv, .h, .py, .table, .inp, .xml, .sdf")
@@ -127,7 +129,8 @@ class Law:
                                    lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
         forms.filters.update(
             exactly="{:.17g}".format, short=short,
-            numbers=lambda values: ",\n    ".join(", ".join(map("{:.17g}".format, values[k:k + 4])) for k in range(0, len(values), 4)),
+            numbers=lambda values: ",\n    ".join(
+                ", ".join(map("{:.17g}".format, values[k:k + 4])) for k in range(0, len(values), 4)),
             harmless=lambda text: re.sub(r'[*"\\]', "_", text),  # closes no comment and no text
             comment=lambda text: re.sub("-(?=-)", "_", text))  # as XML allows
         return forms.get_template(f"{ending[1:]}.j2").render(
@@ -139,7 +142,8 @@ class Law:
         units = {"rotation": "mu W/(G a^2)", "moment": "mu W a", "rotation_unit": 1.0, "moment_unit": 1.0}
         if self.units:
             units = {"rotation": "rad", "moment": "N m", "rotation_unit": self.rotation_unit, "moment_unit": self.moment_unit,
-                     **{name: getattr(self.units, name) for name in ("friction", "normal_load", "contact_radius", "shear_modulus")}}
+                     **asdict(self.units)}
+            del units["sphere_radius"]
         force, length = (self.units.friction * self.units.normal_load, self.units.contact_radius) if self.units else (1.0, 1.0)
 
         def load_json(load: LimitLoad) -> dict[str, Any]:
@@ -183,8 +187,8 @@ class Law:
                         f"{3 * elements.error:.2g} on loops between t and -t, {elements.history_error:.2g} after any rotations",
             "limit surface": f"{len(self.surface.loads)} loads; the ellipsoid through its ends is "
                              f"{100 * self.surface.ellipsoid_error:+.2g} % off",
-            "LAMMPS": f"twisting sds {lammps['k_twist']:.6g} 0 {lammps['mu_twist']:.6g}: up to {100 * lammps['error']:+.2g} % of the "
-                      f"limit off; twisting marshall: the limit {100 * lammps['marshall_limit_error']:+.2g} %"}
+            "LAMMPS": f"twisting sds {lammps['k_twist']:.6g} 0 {lammps['mu_twist']:.6g}: up to {100 * lammps['error']:+.2g} % "
+                      f"of the limit off; twisting marshall: the limit {100 * lammps['marshall_limit_error']:+.2g} %"}
         if mujoco := self.programs["mujoco"]:
             lines["MuJoCo"] = ("friction {:.6g} {:.6g} 0: the limit exact, no presliding ".format(*mujoco["friction"])
                                + f"({mujoco['lost_presliding']:.6g} rad at 0.9)")
@@ -198,5 +202,6 @@ class Law:
 def answer(request: dict[str, Any]) -> dict[str, Any]:
     """For the program: a Law's arguments and the names of its files. A number that is null is no number."""
     files, units = request.pop("files"), request.pop("units", None)
-    law = Law(**{name: nan if value is None else value for name, value in request.items()}, units=Units(**units) if units else None)
+    numbers = {name: nan if value is None else value for name, value in request.items()}
+    law = Law(**numbers, units=Units(**units) if units else None)
     return {"exit_code": 0, "text": law.text(), "result": law.result(), "files": [law.file(file) for file in files]}
