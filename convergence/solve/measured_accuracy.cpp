@@ -1,6 +1,5 @@
 #include "convergence/solve/measured_accuracy.hpp"
 
-#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -63,12 +62,6 @@ double work_on(const MeasuredMesh& mesh, double tolerance) {
   return mesh.work.back();
 }
 
-std::string list_text(const std::vector<double>& values) {
-  std::vector<std::string> words;
-  for (const double value : values) words.push_back(fmt::format("{:.4g}", value));
-  return fmt::format("[{}]", fmt::join(words, ", "));
-}
-
 }  // namespace
 
 const solver::Words<AccuracyOf>& accuracy_words() {
@@ -83,34 +76,6 @@ AccuracyData accuracy_data() {
   AccuracyData data;
   for (const toml::node& mesh : *root["mesh"].as_array()) data.meshes.push_back(mesh_of(*mesh.as_table()));
   return data;
-}
-
-std::string accuracy_toml(const AccuracyData& data, const std::string& origin) {
-  std::string text = fmt::format(
-      "# Errors of smooth contacts in torsion and work of their solves, by which `slipstick solve "
-      "--accuracy` "
-      "chooses a mesh.\n"
-      "# {}\n"
-      "# cells_across: the contact's diameter over a cell's side. error: relative, the largest over the "
-      "loads and "
-      "over\n"
-      "# finer meshes. tolerance: the loosest that changes it by at most a tenth. applications, work: at "
-      "each of "
-      "the\n"
-      "# tolerances, the most over the loads. Unit of work: the seconds of one application on 64 x 64 "
-      "cells.\n"
-      "version = 1\n",
-      origin);
-  for (const MeasuredMesh& mesh : data.meshes) {
-    text += fmt::format("\n[[mesh]]\ncells_across = {:.5g}\n", mesh.cells_across);
-    for (const auto& [word, of] : accuracy_words()) {
-      text += fmt::format("{} = {{ error = {:.3g}, tolerance = {:g} }}\n", word, at(mesh, of).error,
-                          at(mesh, of).tolerance);
-    }
-    text += fmt::format("tolerances = {}\napplications = {}\nwork = {}\n", list_text(mesh.tolerances),
-                        list_text(mesh.applications), list_text(mesh.work));
-  }
-  return text;
 }
 
 Needed needed_for(const AccuracyData& data, AccuracyOf of, double error) {

@@ -37,11 +37,9 @@ struct AccuracyData {
   std::vector<MeasuredMesh> meshes;  ///< finer and finer, at least two
 };
 
-/// The data of accuracy.toml: errors and tolerances fall from mesh to mesh.
+/// The data of accuracy.toml, which `bench --accuracy-data` writes: errors and tolerances fall from mesh to
+/// mesh.
 AccuracyData accuracy_data();
-
-/// The text of a file like accuracy.toml; `origin` becomes a comment on machine and date.
-std::string accuracy_toml(const AccuracyData& data, const std::string& origin);
 
 /// The mesh and the tolerance that reach an error.
 struct Needed {

@@ -13,13 +13,10 @@
 #include "convergence/solve/reached.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/input/input_file.hpp"
 #include "solver/model/make_model.hpp"
 
 namespace slipstick::convergence {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Errors 1/cells^order.
 AccuracyData made_data(double order) {
@@ -57,8 +54,7 @@ TEST(AccuracyData, TellTheWorkBetweenMeshesAndTolerances) {
   EXPECT_NEAR(work_of(data, 20.0, 0.5), 400.0, 1e-9);
 }
 
-/// The data of the program are monotonic, as the choice of a mesh needs, and their file is in the written
-/// format.
+/// The data of the program are monotonic, as the choice of a mesh needs.
 TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
   const AccuracyData data = accuracy_data();
   ASSERT_GE(data.meshes.size(), 3U);
@@ -74,11 +70,6 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
     EXPECT_GT(std::ranges::min(work), 0.0);
   }
   for (const auto& [word, of] : accuracy_words()) EXPECT_GT(falling_order(data, of), 0.0) << word;
-  const std::string file = solver::read_input_file(
-      fs::path(SLIPSTICK_SCENES).parent_path() / "solve/accuracy.toml", 1 << 20, "accuracy data");
-  const std::size_t origin = file.find("# ", 1);
-  const std::string written = file.substr(origin + 2, file.find('\n', origin) - origin - 2);
-  EXPECT_EQ(accuracy_toml(data, written), file);
 }
 
 /// By the data of the program.

@@ -154,76 +154,60 @@ class ComparisonTest(unittest.TestCase):
 
 
 class ObstaclesTest(unittest.TestCase):
-    def obstacle(self, change, **rules):
-        """The obstacle after a change to the files, one of which is slower by half; empty: none."""
-        base, now = changed(1.5)
-        change(base, now)
-        comparison = compare(base, now, Rules(**rules))
-        if not comparison.obstacles:
-            self.assertEqual(comparison.exit_code(), 1)
-            return ""
+    def expect(self, says, change=None, rules=None, now=None, base=None):
+        """After a change to the files, or to one file's context: the obstacle, empty: none. One benchmark is slower by half."""
+        files = changed(1.5)
+        for file, values in zip(files, (base, now)):
+            vars(file).update(values or {})
+        if change is not None:
+            change(*files)
+        comparison = compare(*files, Rules(**(rules or {})))
+        if not says:
+            self.assertEqual((comparison.obstacles, comparison.exit_code()), ([], 1))
+            return
         self.assertEqual((comparison.exit_code(), found(comparison).finding), (2, "not judged"))
         self.assertAlmostEqual(found(comparison).ratio, 1.5, delta=0.02)  # the numbers stay
-        return comparison.obstacles[0]
-
-    def setting(self, side, **values):
-        def change(*files):
-            vars(files[side]).update(values)
-        return change
-
-    def expect(self, change, *says, **rules):
-        text = self.obstacle(change, **rules)
-        self.assertEqual(bool(text), bool(says), text)
         for part in says:
-            self.assertIn(part, text)
+            self.assertIn(part, comparison.obstacles[0])
 
     def test_different_machines(self):
-        self.expect(lambda base, now: None)
-        for key, value, shown in (
-                ("cpus", 4, "num_cpus"), ("host_name", "elsewhere", "host_name"), ("mhz", 3180.0, "mhz_per_cpu"),
-                ("mhz", math.nan, "mhz_per_cpu"), ("caches", '[{"level":2}]', "caches")):
-            self.expect(self.setting(1, **{key: value}), "machines differ", shown)
-            self.expect(self.setting(1, **{key: value}), same_machine=True)
-        self.expect(self.setting(1, mhz=3120.0))
-
-        def one_session(base, now):  # is of one machine, whose clock may change
-            base.session = now.session = "one"
-            now.mhz = 6000.0
-        self.expect(one_session)
+        self.expect(())
+        for now, shown in (({"cpus": 4}, "num_cpus"), ({"host_name": "elsewhere"}, "host_name"),
+                           ({"mhz": 3180.0}, "mhz_per_cpu"), ({"mhz": math.nan}, "mhz_per_cpu"),
+                           ({"caches": '[{"level":2}]'}, "caches")):
+            self.expect(("machines differ", shown), now=now)
+            self.expect((), now=now, rules={"same_machine": True})
+        self.expect((), now={"mhz": 3120.0})
+        self.expect((), base={"session": "one"}, now={"session": "one", "mhz": 6000.0})  # one machine, whose clock may change
 
     def test_debug_builds(self):
-        self.expect(self.setting(0, library_build_type="debug"), "base.json", "--debug-library")
-        self.expect(self.setting(0, library_build_type="debug"), debug_library=True)
-        self.expect(self.setting(1, library_build_type="debug", build_type="release"))
-        self.expect(self.setting(1, build_type="Debug"), "new.json", "debug build", debug_library=True)
+        self.expect(("base.json", "--debug-library"), base={"library_build_type": "debug"})
+        self.expect((), base={"library_build_type": "debug"}, rules={"debug_library": True})
+        self.expect((), now={"library_build_type": "debug", "build_type": "release"})
+        self.expect(("new.json", "debug build"), now={"build_type": "Debug"}, rules={"debug_library": True})
 
     def test_load_that_the_run_does_not_explain(self):
         for side, name in enumerate(("base.json", "new.json")):
-            def load(average, threads):
-                def change(*files):
+            for average, threads, says in ((5.1, 1, (name, "loaded")), (4.9, 1, ()), (5.1, 2, ())):
+                def load(*files):
                     files[side].load_average, files[side].benchmarks[-1].threads = average, threads
-                return change
-            self.expect(load(5.1, 1), name, "loaded")
-            self.expect(load(4.9, 1))
-            self.expect(load(5.1, 2))
+                self.expect(says, load)
 
     def test_most_benchmarks_wait(self):
-        def wait(side, factor, count=4, session="", name=""):
-            def change(*files):  # the first benchmarks of a file take longer by the clock than by the processor's time
+        for side, factor, count, session, name, says in (
+                (1, 1.6, 4, "", "", ("new.json", "4 of 4")), (0, 1.6, 4, "", "", ("base.json",)), (1, 1.2, 4, "", "", ()),
+                (1, 20.0, 4, "", "", ()),  # by their nature
+                (1, 1.6, 2, "", "", ()),  # a sleep in two of four
+                (1, 1.6, 4, "one", "", ()),  # both sides of a pair wait alike
+                (1, 1.6, 4, "", "/manual_time", ())):  # three bring their own clock
+            def wait(*files):  # the first benchmarks of a file take longer by the clock than by the processor's time
                 for benchmark in files[side].benchmarks[:count]:
                     benchmark.cpu = [time / factor for time in benchmark.real]
                 for file in files:
                     file.session = session
                     for benchmark in file.benchmarks[1:]:
                         benchmark.name += name
-            return change
-        self.expect(wait(1, 1.6), "new.json", "4 of 4")
-        self.expect(wait(0, 1.6), "base.json")
-        self.expect(wait(1, 1.2))
-        self.expect(wait(1, 20.0))  # by their nature
-        self.expect(wait(1, 1.6, count=2))  # a sleep in two of four
-        self.expect(wait(1, 1.6, session="one"))  # both sides of a pair wait alike
-        self.expect(wait(1, 1.6, name="/manual_time"))  # three bring their own clock
+            self.expect(says, wait)
 
     def test_one_run_against_itself(self):
         base, now = run_of([], [])

@@ -11,26 +11,19 @@ CORPUS = Path(__file__).resolve().parent / "corpus/timings"
 # As version 1.7 writes it, shortened.
 FILE = r"""{
   "context": {
-    "date": "2026-11-20T21:13:05+00:00", "host_name": "vm", "executable": "./program", "num_cpus": 2,
-    "mhz_per_cpu": 2100, "cpu_scaling_enabled": true,
-    "caches": [ { "type": "Data", "level": 1, "size": 32768, "num_sharing": 1 },
-                { "type": "Unified", "level": 2, "size": 2097152, "num_sharing": 2 } ],
-    "load_avg": [0.52,0.34,1.2], "library_build_type": "debug", "build_type": "release", "session": "s1"
-  },
+    "date": "2026-11-20T21:13:05+00:00", "host_name": "vm", "num_cpus": 2, "mhz_per_cpu": 2100, "cpu_scaling_enabled": true,
+    "caches": [ { "type": "Data", "level": 1, "size": 32768, "num_sharing": 1 } ],
+    "load_avg": [0.52,0.34,1.2], "library_build_type": "debug", "build_type": "release", "session": "s1" },
   "benchmarks": [
-    { "name": "apply/8/repeats:2", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8/repeats:2",
-      "run_type": "iteration", "repetitions": 2, "repetition_index": 0, "threads": 2, "iterations": 331,
-      "real_time": 2.1e+03, "cpu_time": 2.0e+03, "time_unit": "us", "error": 1e-16, "flops": Infinity },
-    { "name": "apply/8/repeats:2", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8/repeats:2",
-      "run_type": "iteration", "repetitions": 2, "repetition_index": 1, "threads": 2, "iterations": 331,
-      "real_time": 2.2e+03, "cpu_time": 2.1e+03, "time_unit": "us", "error": 2e-16, "flops": -NaN,
-      "label": "a label that says NaN, \"Infinity\" and C:\\" },
-    { "name": "apply/8/repeats:2_mean", "family_index": 0, "per_family_instance_index": 0,
-      "run_name": "apply/8/repeats:2", "run_type": "aggregate", "aggregate_name": "mean", "aggregate_unit": "time",
-      "iterations": 2, "real_time": 2.15e+03, "cpu_time": 2.05e+03, "time_unit": "us" },
-    { "name": "apply_BigO", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply",
-      "run_type": "aggregate", "aggregate_name": "BigO", "aggregate_unit": "time", "cpu_coefficient": 1.2,
-      "real_coefficient": 1.2, "big_o": "NlgN", "time_unit": "ns" },
+    { "name": "apply/8", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8", "run_type": "iteration",
+      "repetitions": 2, "repetition_index": 0, "threads": 2, "iterations": 331, "real_time": 2.1e+03, "cpu_time": 2.0e+03,
+      "time_unit": "us", "error": 1e-16, "flops": Infinity },
+    { "name": "apply/8", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8", "run_type": "iteration",
+      "repetitions": 2, "repetition_index": 1, "threads": 2, "iterations": 331, "real_time": 2.2e+03, "cpu_time": 2.1e+03,
+      "time_unit": "us", "error": 2e-16, "flops": -NaN, "label": "a label that says NaN, \"Infinity\" and C:\\" },
+    { "name": "apply/8_mean", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8",
+      "run_type": "aggregate", "aggregate_name": "mean", "real_time": 2.15e+03, "cpu_time": 2.05e+03, "time_unit": "us" },
+    { "name": "apply_BigO", "run_name": "apply", "run_type": "aggregate", "aggregate_name": "BigO", "cpu_coefficient": 1.2 },
     { "name": "apply_RMS", "run_name": "apply", "run_type": "aggregate", "aggregate_name": "RMS", "rms": 0.1 }
   ]
 }"""
@@ -49,46 +42,33 @@ class TimingsTest(unittest.TestCase):
         read = timings.parse(FILE, "file.json")
         self.assertEqual((read.host_name, read.cpus, read.mhz, read.load_average, read.library_build_type, read.build_type,
                           read.session), ("vm", 2, 2100.0, 0.52, "debug", "release", "s1"))
-        self.assertIn("2097152", read.caches)
-        self.assertEqual(list(read.by_name()), ["apply/8/repeats:2"])  # fits are of no benchmark
-        benchmark = read.benchmarks[0]
+        self.assertIn("32768", read.caches)
+        benchmark, = read.benchmarks  # fits are of no benchmark
         self.assertEqual([round(time, 18) for time in benchmark.real + benchmark.cpu], [2.1e-3, 2.2e-3, 2.0e-3, 2.1e-3])
         self.assertEqual(benchmark.counters, {"error": 2e-16})  # no infinity, no NaN
-        self.assertEqual((benchmark.threads, benchmark.error, benchmark.has_times()), (2, "", True))
+        self.assertEqual((benchmark.name, benchmark.threads, benchmark.error, benchmark.has_times()), ("apply/8", 2, "", True))
 
-    def test_units_are_seconds(self):
+    def test_rows_become_benchmarks(self):
         for unit, factor in (("ns", 1e-9), ("us", 1e-6), ("ms", 1e-3), ("s", 1.0)):
             read, = benchmarks(f'{{"name": "a", "real_time": 3, "cpu_time": 2, "time_unit": "{unit}"}}')
             self.assertAlmostEqual(read.real[0] / factor, 3.0, delta=1e-14)
             self.assertAlmostEqual(read.cpu[0] / factor, 2.0, delta=1e-14)
+        mean, = benchmarks('{"name": "a_mean", "run_name": "a", "run_type": "aggregate", "real_time": 1}')
+        self.assertEqual((mean.name, mean.has_times()), ("a", False))
+        two = benchmarks(*(f'{{"name": "a", "family_index": {i}, "real_time": 1, "cpu_time": 1}}' for i in (0, 0, 1)))
+        self.assertEqual([(read.name, len(read.real)) for read in two], [("a", 2), ("a #2", 1)])
+        read, = benchmarks(r'{"name": "a \"NaN, -inf\\", "real_time": 1, "cpu_time": 1, "flops": NaN}')
+        self.assertEqual((read.name, read.counters), ('a "NaN, -inf\\', {}))
 
-    def test_aggregates_alone_are_no_times(self):
-        read, = benchmarks('{"name": "sort_mean", "run_name": "sort", "run_type": "aggregate", "aggregate_name": "mean", '
-                           '"real_time": 10}')
-        self.assertEqual((read.name, read.has_times()), ("sort", False))
-
-    def test_two_benchmarks_of_one_name_stay_two(self):
-        rows = [f'{{"name": "a", "run_name": "a", "run_type": "iteration", "family_index": {i}, "real_time": 1, "cpu_time": 1}}'
-                for i in (0, 0, 1)]
-        self.assertEqual([(read.name, len(read.real)) for read in benchmarks(*rows)], [("a", 2), ("a #2", 1)])
-
-    def test_failures_and_skips_say_why(self):
-        failed, skipped = benchmarks(
-            '{"name": "a", "run_name": "a", "run_type": "iteration", "error_occurred": true, '
-            '"error_message": "disagrees with its reference", "real_time": 0.0, "time_unit": "ns"}',
-            '{"name": "b", "run_name": "b", "run_type": "iteration", "skipped": true, "skip_message": "no GPU"}')
-        self.assertEqual((failed.error, failed.has_times()), ("disagrees with its reference", False))
+    def test_failures_skips_and_times_that_are_none_say_why(self):
+        failed, skipped = benchmarks('{"name": "a", "error_occurred": true, "error_message": "disagrees", "real_time": 0.0}',
+                                     '{"name": "b", "skipped": true, "skip_message": "no GPU"}')
+        self.assertEqual((failed.error, failed.has_times()), ("disagrees", False))
         self.assertEqual((skipped.error, skipped.skipped, skipped.has_times()), ("", "no GPU", False))
-
-    def test_times_that_are_none_are_failures(self):
         for time in ("NaN", "-NaN", "Infinity", "null", "0.0", "-1.5"):
             read, = benchmarks(*(f'{{"name": "a", "real_time": {each}, "cpu_time": 1}}' for each in (1, time)))
             self.assertIn("repetition 2", read.error)
             self.assertFalse(read.has_times())
-
-    def test_names_may_hold_what_looks_like_no_number(self):
-        read, = benchmarks(r'{"name": "a \"NaN, -inf\\", "real_time": 1, "cpu_time": 1, "flops": NaN}')
-        self.assertEqual((read.name, read.counters), ('a "NaN, -inf\\', {}))
 
     def test_other_files_are_refused_by_name_and_place(self):
         for text, says in (

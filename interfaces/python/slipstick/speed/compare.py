@@ -129,7 +129,7 @@ def compare(base: Timings, now: Timings, rules: Rules = Rules()) -> Comparison:
     others as independent samples (Mann and Whitney's test), both exactly. An obstacle leaves the numbers and takes the
     verdicts."""
     comparison = Comparison(paired=are_paired(base, now))
-    known, pairs = now.by_name(), []
+    known, pairs = {after.name: after for after in now.benchmarks}, []
     for before in base.benchmarks:
         after = known.pop(before.name, None)
         comparison.benchmarks.append(_match(before, after))

@@ -29,9 +29,9 @@ RACES = (("application/dense", "application/dcfft"), ("application/direct", "app
 
 
 class LogTime(NamedTuple):
-    """The logarithm of a time, its standard error and the degrees of freedom that this rests on."""
+    """The logarithm of a time, its standard error (NaN: one repetition) and the degrees of freedom that this rests on."""
     value: float
-    error: float  # NaN: one repetition
+    error: float
     freedom: int
 
     def half(self) -> float:
@@ -52,9 +52,7 @@ def log_time(seconds: list[float]) -> LogTime | None:
 
 def typical(seconds: list[float]) -> tuple[float, float, float]:
     """The median of repetitions with its 95 % interval; NaN: fewer than two repetitions."""
-    time = log_time(seconds)
-    if time is None:
-        return math.nan, math.nan, math.nan
+    time = log_time(seconds) or LogTime(math.nan, math.nan, 0)
     return math.exp(time.value), math.exp(time.value - time.half()), math.exp(time.value + time.half())
 
 
@@ -68,23 +66,18 @@ def fit_power_law(family: Family) -> dict[str, Any]:
     """constant cells^exponent with the exponent's 95 % interval (Student's, from the residuals), by least squares of logarithms
     over the asymptotic part: from an eighth of the largest size up, three doublings, at least three sizes. Below, what each
     call costs whatever its size takes a part of the time. `why_not`: why no law was fitted."""
-    none = {"exponent": math.nan, "low": math.nan, "high": math.nan, "constant": math.nan, "cells": []}
+    law = {**dict.fromkeys(("exponent", "low", "high", "constant"), math.nan), "cells": [], "why_not": ""}
     times = _log_times(family)
     if len(times) < MIN_SIZES:
-        return {**none, "why_not": f"{len(times)} sizes have a time, {MIN_SIZES} are needed"}
+        return {**law, "why_not": f"{len(times)} sizes have a time, {MIN_SIZES} are needed"}
     least = max(times) / ASYMPTOTIC_SPAN
     cells = [size for size in times if size >= least]
     if len(cells) < MIN_SIZES:
-        return {**none, "why_not": f"{len(cells)} sizes from {least:g} cells up, {MIN_SIZES} are needed"}
-    x, y = numpy.log(cells), numpy.array([times[size].value for size in cells])
-    about = x - x.mean()
-    slope = float(about @ y / (about @ about))
-    start = float(y.mean() - slope * x.mean())
-    freedom = len(cells) - 2
-    variance = float(numpy.sum((y - start - slope * x) ** 2)) / freedom / float(about @ about)
-    half = math.sqrt(variance) * float(stdtrit(freedom, UPPER_QUANTILE))
-    return {"exponent": slope, "low": slope - half, "high": slope + half, "constant": math.exp(start), "cells": cells,
-            "why_not": ""}
+        return {**law, "why_not": f"{len(cells)} sizes from {least:g} cells up, {MIN_SIZES} are needed"}
+    (slope, start), covariance = numpy.polyfit(numpy.log(cells), [times[size].value for size in cells], 1, cov=True)
+    half = float(stdtrit(len(cells) - 2, UPPER_QUANTILE)) * math.sqrt(covariance[0, 0])
+    return {**law, "exponent": float(slope), "low": slope - half, "high": slope + half, "constant": math.exp(start),
+            "cells": cells}
 
 
 def _crossing(log_cells: list[float], log_ratios: list[float]) -> float:

@@ -8,46 +8,32 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, Iterable, Iterator, List, Optional, Tuple
 
 from ..errors import InputError
 from . import compare, timings
 
-
-@dataclass(frozen=True)
-class RunLength:
-    """How long one run of a benchmark lasts."""
-    seconds: float = 0.05  # least timed duration
-    repetitions: int = 1
+# A name, under which two benchmarks are compared, and program and benchmark of either side, the base first; None: none.
+Pair = Tuple[str, List[Optional[Tuple[str, str]]]]
+PAIR_SECONDS = 0.05  # least timed duration of a run
 
 
-@dataclass(frozen=True)
-class Pair:
-    """Benchmarks of the base program and the compared one, run in immediate succession. No name: there is none to run."""
-    name: str  # under which they are compared
-    sides: tuple[tuple[str, str], tuple[str, str]]  # program and benchmark
-
-
-class Progress:
-    """Progress on standard error: on a terminal one line, rewritten; elsewhere a line every ten seconds."""
-
-    def __init__(self, total: int) -> None:
-        self._total, self._done, self._start = total, 0, time.monotonic()
-        self._said = self._start
-
-    def finished(self, label: str) -> None:
-        self._done += 1
-        now, terminal, last = time.monotonic(), sys.stderr.isatty(), self._done == self._total
-        if not terminal and not last and now - self._said < 10.0:
-            return
-        self._said = now
-        left = (now - self._start) / self._done * (self._total - self._done)
-        shown = "".join(c if c.isprintable() else "?" for c in label)
-        print(f"{chr(13) + chr(27) + '[K' if terminal else ''}[{self._done}/{self._total}] {shown}, about {left:.0f} s left",
-              end="" if terminal and not last else "\n", file=sys.stderr, flush=True)
+def shown(parts: Iterable[tuple[str, Any]], total: int) -> Iterator[Any]:
+    """The parts, each labelled, with their progress on standard error: on a terminal one line, rewritten; elsewhere a line
+    every ten seconds."""
+    start = said = time.monotonic()
+    terminal = sys.stderr.isatty()
+    for done, (label, part) in enumerate(parts, 1):
+        yield part
+        now, last = time.monotonic(), done == total
+        if terminal or last or now - said >= 10.0:
+            said = now
+            printable = "".join(c if c.isprintable() else "?" for c in label)
+            print(f"{chr(13) + chr(27) + '[K' if terminal else ''}[{done}/{total}] {printable}, about "
+                  f"{(now - start) / done * (total - done):.0f} s left", end="" if terminal and not last else "\n",
+                  file=sys.stderr, flush=True)
 
 
 def exactly(name: str) -> str:
@@ -70,31 +56,29 @@ def list_benchmarks(program: str, pattern: str) -> list[str]:
     return names
 
 
-def run_benchmark(program: str, name: str, length: RunLength, starter: list[str]) -> dict[str, Any]:
+def run_benchmark(program: str, name: str, starter: list[str], seconds: float, repetitions: int = 1) -> dict[str, Any]:
     """Runs one benchmark in a process of its own; its output, in Google Benchmark's JSON. starter: words that start a program
     so that it does not outlive this one."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "timings.json"
-        words = [os.path.abspath(program), f"--benchmark_filter={exactly(name)}", f"--benchmark_out={out}",
-                 "--benchmark_out_format=json", f"--benchmark_min_time={length.seconds:g}",
-                 f"--benchmark_repetitions={length.repetitions}"]
-        end = subprocess.run([*starter, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                             check=False)
+        words = [*starter, os.path.abspath(program), f"--benchmark_filter={exactly(name)}", f"--benchmark_out={out}",
+                 "--benchmark_out_format=json", f"--benchmark_min_time={seconds:g}", f"--benchmark_repetitions={repetitions}"]
+        end = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
         if end.returncode != 0:
             how = f"ended with code {end.returncode}" if end.returncode > 0 else f"was killed by signal {-end.returncode}"
             raise InputError(f"{program}: benchmark {name} {how}")
         return timings.parse_json(out.read_text(errors="replace"), f"{program}: benchmark {name}")
 
 
-def survey(program: str, pattern: str, length: RunLength, folder: Path, starter: list[str]) -> dict[str, Any]:
+def survey(program: str, pattern: str, folder: Path, starter: list[str], seconds: float, repetitions: int) -> dict[str, Any]:
     """Runs benchmarks one after the other; one file of all. Finished ones are kept in the folder and not run again for the same
     program and length; an interrupt loses the one being run."""
     folder.mkdir(parents=True, exist_ok=True)
     names = list_benchmarks(program, pattern)
-    progress, status = Progress(len(names)), os.stat(program)
+    status = os.stat(program)
     file: dict[str, Any] = {}
-    for name in names:
-        key = [os.path.abspath(program), status.st_size, status.st_mtime_ns, name, length.seconds, length.repetitions]
+    for name in shown(zip(names, names), len(names)):
+        key = [os.path.abspath(program), status.st_size, status.st_mtime_ns, name, seconds, repetitions]
         readable = re.sub("[^A-Za-z0-9]", "-", name)[:80]
         kept = folder / f"{readable}-{sha256(name.encode()).hexdigest()[:16]}.json"
         try:
@@ -103,53 +87,46 @@ def survey(program: str, pattern: str, length: RunLength, folder: Path, starter:
         except (OSError, ValueError, TypeError, KeyError):
             run = None
         if run is None:
-            run = run_benchmark(program, name, length, starter)
+            run = run_benchmark(program, name, starter, seconds, repetitions)
             draft = kept.with_suffix(f".part-{os.getpid()}")
             draft.write_text(json.dumps({"key": key, "result": run}, indent=1))
             draft.replace(kept)
         file = file or {"context": run["context"], "benchmarks": []}
         file["benchmarks"] += run["benchmarks"]
-        progress.finished(name)
     return file
 
 
 def two_builds(base: str, now: str, pattern: str) -> list[Pair]:
     """Every benchmark that fits in either program, by its name; a benchmark of one program only has no partner."""
-    of_base, of_now = list_benchmarks(base, pattern), list_benchmarks(now, pattern)
-    return [Pair(name, ((base, name if name in of_base else ""), (now, name if name in of_now else "")))
-            for name in dict.fromkeys(of_base + of_now)]
+    known = {program: list_benchmarks(program, pattern) for program in (base, now)}
+    return [(name, [(program, name) if name in known[program] else None for program in (base, now)])
+            for name in dict.fromkeys(known[base] + known[now])]
 
 
 def two_methods(program: str, base: str, now: str) -> list[Pair]:
     """Two benchmarks of one program, compared under both names."""
     for name in (base, now):
         list_benchmarks(program, exactly(name))
-    return [Pair(f"{now} over {base}", ((program, base), (program, now)))]
+    return [(f"{now} over {base}", [(program, base), (program, now)])]
 
 
 def run_session(pairs: list[Pair], rounds: int, starter: list[str]) -> list[dict[str, Any]]:
     """The base's file and the new one, a repetition a round, both with the same "session" in their context. Runs all pairs,
     `rounds` times, every other time in the reverse order (AB, BA, AB...), so that other load of the machine affects both."""
-    progress = Progress(len(pairs) * rounds)
     files: list[dict[str, Any]] = [{"context": {}, "benchmarks": []}, {"context": {}, "benchmarks": []}]
-    for i in range(rounds):
-        for pair in pairs:
-            for side in ((0, 1) if i % 2 == 0 else (1, 0)):
-                if not pair.sides[side][1]:
-                    continue
-                run = run_benchmark(*pair.sides[side], RunLength(), starter)
-                files[side]["context"] = files[side]["context"] or run["context"]
-                files[side]["benchmarks"] += [
-                    {**row, "name": pair.name, "run_name": pair.name, "repetitions": rounds, "repetition_index": i}
-                    for row in run["benchmarks"] if row.get("run_type", "iteration") == "iteration"]
-            progress.finished(pair.name)
+    parts = ((pair[0], (i, *pair)) for i in range(rounds) for pair in pairs)
+    for i, name, sides in shown(parts, len(pairs) * rounds):
+        for side, file in list(zip(sides, files))[::1 if i % 2 == 0 else -1]:
+            if side is not None:
+                run = run_benchmark(*side, starter, PAIR_SECONDS)
+                file["context"] = file["context"] or run["context"]
+                file["benchmarks"] += [{**row, "name": name, "run_name": name, "repetitions": rounds, "repetition_index": i}
+                                       for row in run["benchmarks"] if row.get("run_type", "iteration") == "iteration"]
     session = f"{time.time_ns() // 1000000}-{os.getpid()}"
-    for file in files:
-        file["context"]["session"] = session
-    return files
+    return [{**file, "context": {**file["context"], "session": session}} for file in files]
 
 
-def compare_pairs(pairs: list[Pair], rounds: int, rules: compare.Rules, names: tuple[str, str],
+def compare_pairs(pairs: list[Pair], rounds: int, rules: compare.Rules, base: str, now: str,
                   starter: list[str]) -> dict[str, Any]:
     """Runs a session, and a second one with twice the rounds for the benchmarks that look slower: a verdict counts if both
     agree. The answer holds the first session's files."""
@@ -160,24 +137,21 @@ def compare_pairs(pairs: list[Pair], rounds: int, rules: compare.Rules, names: t
     found, second = compared(files), None
     doubtful = {benchmark.name for benchmark in found.benchmarks if benchmark.finding in compare.SECOND_RUN}
     if doubtful:
-        second = compared(run_session([pair for pair in pairs if pair.name in doubtful], 2 * rounds, starter))
+        second = compared(run_session([pair for pair in pairs if pair[0] in doubtful], 2 * rounds, starter))
         found = compare.confirm(found, second)
-    return {**compare.report(*names, rules, found, second), "files": files}
+    return {**compare.report(base, now, rules, found, second), "files": files}
 
 
 def answer(request: dict[str, Any]) -> dict[str, Any]:
     """A survey, or a comparison of two builds or two methods."""
-    program = request["program"]
+    program, what = request["program"], request["what"]
     starter = [request["starter"], "--tied-to", str(os.getpid()), "start"] if request["starter"] else []
-    if request["what"] == "survey":
+    if what == "survey":
         from . import growth  # needs SciPy
 
-        length = RunLength(request["seconds"], request["repetitions"])
-        file = survey(program, request["filter"], length, Path(request["folder"]), starter)
+        file = survey(program, request["filter"], Path(request["folder"]), starter, request["seconds"], request["repetitions"])
         laws = growth.scaling(timings.from_json(file, "timings.json"))
         return {"result": file, "scaling": laws, "text": growth.crossovers_text(laws)}
-    if request["what"] == "builds":
-        pairs, names = two_builds(request["base"], program, request["filter"]), (request["base"], program)
-    else:
-        pairs, names = two_methods(program, request["base"], request["now"]), (request["base"], request["now"])
-    return compare_pairs(pairs, request["rounds"], compare.Rules(effect=request["effect"]), names, starter)
+    base, now = request["base"], program if what == "builds" else request["now"]
+    pairs = two_builds(base, now, request["filter"]) if what == "builds" else two_methods(program, base, now)
+    return compare_pairs(pairs, request["rounds"], compare.Rules(effect=request["effect"]), base, now, starter)

@@ -49,9 +49,6 @@ class Timings:
     build_type: str = ""  # of the benchmarks: custom context "build_type"
     session: str = ""  # custom context: files of one session were run in interleaved pairs on one machine
 
-    def by_name(self) -> dict[str, Benchmark]:
-        return {benchmark.name: benchmark for benchmark in self.benchmarks}
-
 
 def are_paired(base: Timings, now: Timings) -> bool:
     """Whether both files are of one session."""
@@ -63,6 +60,10 @@ def is_valid_time(seconds: float) -> bool:
     return 0.0 < seconds < math.inf
 
 
+def is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
 def parse_json(text: str, source: str) -> dict[str, Any]:
     """The JSON that a program of Google Benchmark wrote, infinities and NaN, which it writes as they are, as null. Raises
     InputError with the source for any other text."""
@@ -71,8 +72,12 @@ def parse_json(text: str, source: str) -> dict[str, Any]:
             raise ValueError(f"{number[:MAX_SHOWN]} is too large")
         return float(number)
 
+    def levels(tree: Any) -> int:
+        parts = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else None
+        return 0 if parts is None else 1 + max(map(levels, parts), default=0)
+
     words = re.compile(r'"(?:[^"\\]|\\.)*"?|-?[A-Za-z]+', re.DOTALL)
-    plain = words.sub(lambda found: found[0] if found[0][0] == '"' or found[0] in ("true", "false", "e", "E") else "null", text)
+    plain = words.sub(lambda word: word[0] if word[0][0] == '"' or word[0] in ("true", "false", "e", "E") else "null", text)
     try:
         tree = json.loads(plain, parse_float=finite, parse_int=lambda word: int(word) if len(word) < 19 else finite(word))
         too_deep = levels(tree) > MAX_LEVELS
@@ -87,43 +92,24 @@ def parse_json(text: str, source: str) -> dict[str, Any]:
     return tree
 
 
-def levels(tree: Any) -> int:
-    """The largest number of brackets in brackets."""
-    parts = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else None
-    return 0 if parts is None else 1 + max(map(levels, parts), default=0)
-
-
 class _Object:
     """The values of one object of a file, which stands at `place`."""
 
-    def __init__(self, values: dict[str, Any], source: str, place: str) -> None:
-        self.values, self._source, self._place = values, source, place
+    def __init__(self, values: dict[str, Any], place: str) -> None:
+        self.values, self._place = values, place
 
     def refuse(self, key: str, allowed: str) -> InputError:
         shown = json.dumps(self.values[key])[:MAX_SHOWN] if key in self.values else "nothing"
-        return InputError(f"{self._source}: {self._place}.{key} = {shown}: allowed: {allowed}")
+        return InputError(f"{self._place}.{key} = {shown}: allowed: {allowed}")
 
     def get(self, key: str, otherwise: Any) -> Any:
         """The value of a key, of the same type as `otherwise`, which stands for a missing one; NaN for null as a number."""
         value = self.values.get(key, otherwise)
-        if isinstance(otherwise, float):
-            value = math.nan if value is None else value
-            right = isinstance(value, (int, float)) and not isinstance(value, bool)
-        else:
-            right = type(value) is type(otherwise)
-        if not right:
+        if value is None and isinstance(otherwise, float):
+            return math.nan
+        if not (is_number(value) if isinstance(otherwise, float) else type(value) is type(otherwise)):
             raise self.refuse(key, KINDS[type(otherwise)])
         return value
-
-
-def _read_context(context: _Object) -> dict[str, Any]:
-    load = context.values.get("load_avg", [])
-    if not isinstance(load, list) or (load and (isinstance(load[0], bool) or not isinstance(load[0], (int, float)))):
-        raise context.refuse("load_avg", "a list of numbers")
-    read = {key: context.get(key, "") for key in ("host_name", "library_build_type", "build_type", "session")}
-    return {**read, "cpus": context.get("num_cpus", 0), "mhz": context.get("mhz_per_cpu", 0.0),
-            "caches": json.dumps(context.values.get("caches", []), separators=(",", ":")),
-            "load_average": load[0] if load else 0.0}
 
 
 def _add_repetition(benchmark: Benchmark, row: _Object) -> None:
@@ -138,24 +124,24 @@ def _add_repetition(benchmark: Benchmark, row: _Object) -> None:
         raise row.refuse("time_unit", ", ".join(SECONDS))
     if "real_time" not in row.values:
         raise row.refuse("real_time", "a number")
-    real = SECONDS[unit] * row.get("real_time", math.nan)
-    benchmark.real.append(real)
+    benchmark.real.append(SECONDS[unit] * row.get("real_time", math.nan))
     benchmark.cpu.append(SECONDS[unit] * row.get("cpu_time", math.nan))
     benchmark.counters = {key: float(value) for key, value in row.values.items()
-                          if key not in NOT_COUNTERS and isinstance(value, (int, float)) and not isinstance(value, bool)}
+                          if key not in NOT_COUNTERS and is_number(value)}
     benchmark.threads = row.get("threads", 1)
-    if not is_valid_time(real) and not benchmark.error:
-        benchmark.error = f"the time of repetition {len(benchmark.real)} is {real:g}, which is none"
+    if not is_valid_time(benchmark.real[-1]) and not benchmark.error:
+        benchmark.error = f"the time of repetition {len(benchmark.real)} is {benchmark.real[-1]:g}, which is none"
 
 
-def _read_benchmarks(rows: list[Any], source: str) -> list[Benchmark]:
-    """Puts rows together to benchmarks, in their order. Rows of complexity fits are of a family, not of a benchmark."""
+def from_json(tree: dict[str, Any], source: str) -> Timings:
+    """Puts the rows of a file together to benchmarks, in their order. A row without a type is a repetition; rows of complexity
+    fits are of a family, not of a benchmark. Raises InputError, with the key, for wrong values and without benchmarks."""
     found: dict[tuple[str, int, int], Benchmark] = {}  # two of one name are of two families
     number: Counter[str] = Counter()
-    for i, values in enumerate(rows):
+    for i, values in enumerate(tree["benchmarks"]):
         if not isinstance(values, dict):
             raise InputError(f"{source}: benchmarks[{i}] is no object")
-        row = _Object(values, source, f"benchmarks[{i}]")
+        row = _Object(values, f"{source}: benchmarks[{i}]")
         if row.get("aggregate_name", "") in ("BigO", "RMS"):
             continue
         name = row.get("run_name" if "run_name" in values else "name", "")
@@ -167,17 +153,18 @@ def _read_benchmarks(rows: list[Any], source: str) -> list[Benchmark]:
             found[key] = Benchmark(name if number[name] == 1 else f"{name} #{number[name]}")
         if row.get("run_type", "") != "aggregate":
             _add_repetition(found[key], row)
-    return list(found.values())
+    if not found:
+        raise InputError(f"{source}: holds no benchmark")
+    context = _Object(tree["context"], f"{source}: context")
+    load = tree["context"].get("load_avg", [])
+    if not isinstance(load, list) or (load and not is_number(load[0])):
+        raise context.refuse("load_avg", "a list of numbers")
+    texts = {key: context.get(key, "") for key in ("host_name", "library_build_type", "build_type", "session")}
+    return Timings(source, list(found.values()), cpus=context.get("num_cpus", 0), mhz=context.get("mhz_per_cpu", 0.0),
+                   caches=json.dumps(tree["context"].get("caches", []), separators=(",", ":")),
+                   load_average=load[0] if load else 0.0, **texts)
 
 
 def parse(text: str, source: str) -> Timings:
-    """The timings of a text; messages call it `source`. A row without a type is a repetition. Raises InputError with the key
-    for another text or one without benchmarks."""
+    """The timings of a text; messages call it `source`."""
     return from_json(parse_json(text, source), source)
-
-
-def from_json(tree: dict[str, Any], source: str) -> Timings:
-    benchmarks = _read_benchmarks(tree["benchmarks"], source)
-    if not benchmarks:
-        raise InputError(f"{source}: holds no benchmark")
-    return Timings(source, benchmarks, **_read_context(_Object(tree["context"], source, "context")))
