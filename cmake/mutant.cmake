@@ -26,14 +26,14 @@ function(add_mutant name)
   set(target slipstick_mutant_${name})
   add_executable(${target} EXCLUDE_FROM_ALL "${source}" $<TARGET_OBJECTS:${ARG_ORIGINAL}>)
   slipstick_configure(${target})
+  # As convergence/ is compiled, whose precompiled headers are used.
   slipstick_compile_quickly(${target})
+  target_compile_options(${target} PRIVATE -fPIC)
   target_precompile_headers(${target} REUSE_FROM slipstick_convergence)
   target_include_directories(${target} PRIVATE $<TARGET_PROPERTY:slipstick_${folder},INCLUDE_DIRECTORIES>)
-  # toml++ as in convergence, whose precompiled headers are used.
   target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:${ARG_ORIGINAL},LINK_LIBRARIES> tomlplusplus::tomlplusplus)
   # The unchanged folder is linked too, as one unit. The linker uses the first of two equal functions, also for calls within the
   # unit, since the code is position-independent.
   target_link_options(${target} PRIVATE -Wl,--allow-multiple-definition)
-  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/mutants"
-    POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/mutants")
 endfunction()
