@@ -179,12 +179,6 @@ std::optional<PowerFit> best_with_order(const Meshes& meshes) {
   return alike ? alike : weighted;
 }
 
-std::vector<double> sizes_of(const Meshes& meshes) {
-  std::vector<double> sizes;
-  for (const MeshSample& mesh : meshes) sizes.push_back(mesh.size);
-  return sizes;
-}
-
 /// Half the 95 % interval of a fitted order, the fit taken as linear about it.
 double half_interval(const PowerFit& fit, const Meshes& meshes) {
   const ArrayXd sizes = column(meshes, &MeshSample::size) / meshes.front().size;
@@ -293,10 +287,9 @@ Propagated propagated(const Meshes& three) {
 }
 
 /// Too few values for an order.
-Limit limit_of_few(const Meshes& meshes, std::size_t asked, const std::string& left_out, double expected) {
-  const std::string why = fmt::format("{} of {} meshes have a number, {} are needed{}{}", meshes.size(),
-                                      asked, kMinMeshes, left_out.empty() ? "" : "; ", left_out);
-  const Order order{kNaN, kNaN, kNaN, kNaN, OrderVerdict::too_few, why};
+Limit limit_of_few(const MeshSequence& found, std::size_t asked, double expected) {
+  const Meshes& meshes = found.meshes;
+  const Order order = order_of_few(found, asked);
   if (meshes.empty()) return {kNaN, kNaN, order, "none"};
   const MeshSample& finest = meshes.back();
   if (meshes.size() == 1) return {finest.value, kNaN, order, "finest mesh"};
@@ -320,8 +313,9 @@ Limit least_squares_limit(const std::vector<MeshSample>& values, double expected
 
 Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
   constexpr double most_order = 3.0;  // piecewise constant fields give 2, with luck somewhat more
-  const auto [meshes, left_out] = coarsest_first(values);
-  if (meshes.size() < kMinMeshes) return limit_of_few(meshes, values.size(), left_out, expected);
+  const MeshSequence sequence = coarsest_first(values);
+  const auto& [meshes, left_out] = sequence;
+  if (meshes.size() < kMinMeshes) return limit_of_few(sequence, values.size(), expected);
   const Meshes three(meshes.end() - kMinMeshes, meshes.end());
   const auto [found, order_doubt, limit_doubt] = propagated(three);
   const double constant = found.left / std::pow(three.back().size, found.order);

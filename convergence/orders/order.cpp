@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/newton/coefficients.hpp"
@@ -161,12 +163,8 @@ std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const
 
 Order line_order(const Meshes& meshes, const Scatter& scatter) {
   const LogFit line = log_fit(meshes, scatter, 1);
-  std::vector<double> sizes;
   double centre = 0.0;
-  for (const MeshSample& mesh : meshes) {
-    sizes.push_back(mesh.size);
-    centre += std::log(mesh.size) / static_cast<double>(meshes.size());
-  }
+  for (const MeshSample& mesh : meshes) centre += std::log(mesh.size) / static_cast<double>(meshes.size());
   const double order = line.coefficients[1];
   const double constant = std::exp(line.coefficients[0] - order * centre);
   return {.value = order,
@@ -175,14 +173,80 @@ Order line_order(const Meshes& meshes, const Scatter& scatter) {
           .constant = std::copysign(constant, meshes.back().value),
           .verdict = OrderVerdict::asymptotic,
           .why = "",
-          .sizes = sizes};
+          .sizes = sizes_of(meshes)};
 }
 
 std::string in_words(const Order& order) {
   return fmt::format("order {:.2f} ({:.2f} to {:.2f})", order.value, order.low, order.high);
 }
 
+/// Why a sample is no number; empty if it is one.
+std::string flaw(const MeshSample& sample) {
+  const bool number = sample.grids > 0 && std::isfinite(sample.value) && std::isfinite(sample.spread);
+  if (!number) return fmt::format("no number at size {:.4g}", sample.size);
+  return std::isfinite(sample.noise) ? "" : fmt::format("no noise is known at size {:.4g}", sample.size);
+}
+
 }  // namespace
+
+std::string to_string(OrderVerdict verdict) {
+  constexpr std::array kWords{"asymptotic",  "preasymptotic", "superconvergent",
+                              "oscillatory", "floor",         "too_few"};
+  return kWords.at(static_cast<std::size_t>(verdict));
+}
+
+MeshSequence coarsest_first(const std::vector<MeshSample>& samples) {
+  MeshSequence sequence;
+  for (const MeshSample& sample : samples) {
+    if (!(sample.size > 0.0)) throw std::invalid_argument(fmt::format("a mesh of size {}", sample.size));
+    const std::string reason = flaw(sample);
+    if (reason.empty()) {
+      sequence.meshes.push_back(sample);
+    } else {
+      sequence.left_out += (sequence.left_out.empty() ? "" : ", ") + reason;
+    }
+  }
+  std::ranges::sort(sequence.meshes, std::ranges::greater{}, &MeshSample::size);
+  const auto twice = std::ranges::adjacent_find(sequence.meshes, {}, &MeshSample::size);
+  if (twice != sequence.meshes.end()) {
+    throw std::invalid_argument(fmt::format("two meshes of size {}", twice->size));
+  }
+  return sequence;
+}
+
+double standard_error(const MeshSample& sample) { return sample.spread / std::sqrt(sample.grids); }
+
+double uncertainty(const MeshSample& sample) {
+  return sample.noise + kBelievedScatter * standard_error(sample);
+}
+
+double resolution(const MeshSample& sample) {
+  return std::max(kAboveNoise * sample.noise, kBelievedScatter * standard_error(sample));
+}
+
+bool is_non_monotone(const std::vector<MeshSample>& meshes) {
+  bool rises = false;
+  bool falls = false;
+  for (std::size_t i = 0; i + 1 < meshes.size(); ++i) {
+    const double step = meshes[i + 1].value - meshes[i].value;
+    const double noise = resolution(meshes[i]) + resolution(meshes[i + 1]);
+    rises |= step > noise;
+    falls |= step < -noise;
+  }
+  return rises && falls;
+}
+
+std::vector<double> sizes_of(const std::vector<MeshSample>& meshes) {
+  std::vector<double> sizes;
+  for (const MeshSample& mesh : meshes) sizes.push_back(mesh.size);
+  return sizes;
+}
+
+Order order_of_few(const MeshSequence& found, std::size_t asked) {
+  return no_order(OrderVerdict::too_few,
+                  fmt::format("{} of {} meshes have a number, {} are needed{}{}", found.meshes.size(), asked,
+                              kMinMeshes, found.left_out.empty() ? "" : "; ", found.left_out));
+}
 
 Order judged_by_interval(Order order, double expected) {
   const double half = std::max(order.high - order.value, order.value - order.low);
@@ -205,12 +269,10 @@ Order judged_by_interval(Order order, double expected) {
 }
 
 Order fit_order(const std::vector<MeshSample>& errors, double expected) {
-  const auto [all, left_out] = coarsest_first(errors);
-  std::string also = left_out.empty() ? "" : "; " + left_out;
-  if (all.size() < kMinMeshes) {
-    return no_order(OrderVerdict::too_few, fmt::format("{} of {} meshes have a number, {} are needed{}",
-                                                       all.size(), errors.size(), kMinMeshes, also));
-  }
+  const MeshSequence found = coarsest_first(errors);
+  const Meshes& all = found.meshes;
+  if (all.size() < kMinMeshes) return order_of_few(found, errors.size());
+  std::string also = found.left_out.empty() ? "" : "; " + found.left_out;
   Meshes distinguished;
   std::ranges::copy_if(all, std::back_inserter(distinguished), is_distinguished);
   const std::size_t above = distinguished.size();

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "convergence/check/check.hpp"
-#include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/orders/order.hpp"
 #include "convergence/report/page.hpp"
 #include "convergence/report/scene_cost.hpp"
 #include "convergence/report/scene_numbers.hpp"

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/orders/order.hpp"
 
 namespace slipstick::convergence {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/orders/order.hpp"
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
