@@ -1,6 +1,6 @@
 #pragma once
 
-#include "convergence/exchange/allowed_programs.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/solve_record.hpp"
 #include "solver/scene/scene.hpp"

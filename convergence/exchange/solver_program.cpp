@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "convergence/results/json_text.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 
@@ -53,6 +56,17 @@ std::string last_line(std::string said) {
 std::string with_last_line(const std::string& text, const std::string& said) {
   const std::string line = last_line(said);
   return line.empty() ? text : fmt::format("{}; it says: {}", text, line);
+}
+
+/// A command line that names a program.
+const std::string kProgramKey = "solver.program=";
+
+/// The text of a TOML value or of a bare word.
+std::string unquoted(const std::string& value) {
+  const Json read = Json::parse(value, nullptr, false);
+  if (read.is_string()) return read;
+  const bool quoted = value.size() > 1 && value.front() == '\'' && value.back() == '\'';
+  return quoted ? value.substr(1, value.size() - 2) : value;
 }
 
 }  // namespace
@@ -141,6 +155,23 @@ ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles&
     throw ProgramFailure(with_last_line(fmt::format("{} {}", program.name, end.trouble), end.output));
   }
   return end;
+}
+
+std::string program_override(const std::filesystem::path& file) {
+  return kProgramKey + json_text(std::filesystem::absolute(file).string());
+}
+
+void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed) {
+  if (scene.solver.program.empty() || allowed.all) return;
+  for (const std::string& assignment : allowed.overrides) {
+    if (assignment.starts_with(kProgramKey) &&
+        scene.solver.program == scene.source.parent_path() / unquoted(assignment.substr(kProgramKey.size())))
+      return;
+  }
+  throw InputError(
+      scene.source.string(), "solver.program", scene.solver.program.string(),
+      "one that the command line names, by --program or by --set solver.program=FILE; others run with "
+      "--allow-programs only, since a program may do whatever you may do");
 }
 
 }  // namespace slipstick::convergence

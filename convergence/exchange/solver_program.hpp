@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "convergence/system/run_program.hpp"
 #include "solver/input/setting_key.hpp"
+#include "solver/scene/scene.hpp"
 
 /// Other programs that solve scenes; a file describes how each is started.
 namespace slipstick::convergence {
@@ -51,5 +53,25 @@ struct ExchangeFiles {
 /// ends with code 3: it does not solve such scenes.
 ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles& files,
                               const std::filesystem::path& tied_by);
+
+/// The programs that may be started. A scene, study or gate file that a stranger wrote must not run a
+/// stranger's command: a program that only a file names runs only if the user allows all.
+struct AllowedPrograms {
+  bool all = false;                         ///< --allow-programs
+  std::vector<std::string> overrides = {};  ///< of the command line, which may name one: "solver.program=..."
+  std::filesystem::path tied_by = {};       ///< see ProgramOptions
+  std::optional<std::string> version =
+      {};  ///< of the program, where it is known; none: the program prints it
+};
+
+/// The override by which a scene is solved by this program, whatever its file names.
+inline constexpr const char* kNoProgram = "solver.program=\"\"";
+
+/// The override by which a command line names a program: its file, relative to here.
+std::string program_override(const std::filesystem::path& file);
+
+/// Throws InputError where the scene names a program that is neither allowed nor the one that the command
+/// line names, whichever way a file may name it.
+void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed);
 
 }  // namespace slipstick::convergence

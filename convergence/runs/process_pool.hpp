@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "convergence/exchange/allowed_programs.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/solve_record.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/system/run_program.hpp"
