@@ -1,15 +1,33 @@
-#include "convergence/system/run_program.hpp"
-
 #include <stdexcept>
 
-#include "convergence/system/portable/command_line.hpp"
+#include "convergence/system/machine.hpp"
+#include "convergence/system/run_program.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr const char* kNone = "this build starts no other programs (SLIPSTICK_PORTABLE)";
 
+/// The first word of the command line, set by die_with_parent(); empty before.
+fs::path& named_program() {
+  static fs::path program;
+  return program;
+}
+
 }  // namespace
+
+fs::path own_program() { return own_program_file(); }
+
+fs::path own_program_file() {
+  std::error_code error;
+  return fs::is_regular_file(named_program(), error) ? fs::absolute(named_program()) : fs::path();
+}
+
+std::string processor_name() { return "unknown"; }
+
+bool starts_programs() { return false; }
 
 Program::Program(const std::vector<std::string>&, const ProgramOptions&) { throw std::runtime_error(kNone); }
 Program::~Program() = default;
