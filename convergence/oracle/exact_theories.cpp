@@ -14,7 +14,6 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
-#include "convergence/oracle/exact_shapes.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {

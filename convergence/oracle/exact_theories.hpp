@@ -4,12 +4,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/layered/layered_contact.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "solver/scene/friction_law.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/scene/surface.hpp"
 
 /// The exact theories; exact_history() knows for which scenes each holds.
 namespace slipstick::convergence {
@@ -34,7 +36,21 @@ std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene);
 /// No answer, for this reason.
 std::unique_ptr<ExactHistory> no_theory(const std::string& reason);
 
-// ---------------------------------------------------------------- friction (friction_bound.cpp)
+// ---------------------------------------------------------------- what scenes have in terms of the theories
+// (exact_contacts.cpp)
+
+/// An indenter's shape in terms of the exact theories.
+struct ExactShape {
+  std::string profile;                 ///< as analytic::press() takes it
+  std::vector<double> numbers;         ///< of the profile, SI units
+  std::optional<double> gap_exponent;  ///< n of a gap like r^n; none where contacts are not similar
+};
+
+/// None where the contact is not axisymmetric, or no theory gives it.
+std::optional<ExactShape> exact_shape(const solver::Surface& surface);
+
+/// An ellipsoid with two different radii.
+bool is_elliptic(const solver::Surface& surface);
 
 /// The friction bound of an axisymmetric contact: reference * profile.pressure(r/a).
 struct FrictionBound {
@@ -48,8 +64,6 @@ struct FrictionBound {
 std::optional<FrictionBound> find_friction_bound(const solver::FrictionLaw& law,
                                                  std::shared_ptr<const analytic::Profile> pressure,
                                                  double reference_pressure);
-
-// ---------------------------------------------------------------- bodies with a coat (coated_contact.cpp)
 
 /// The material at the surface: the layer's, where the body has one.
 solver::Material surface_material(const solver::Material& body);

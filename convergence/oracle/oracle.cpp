@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/exact_theories.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/last_digits.hpp"
@@ -15,42 +14,33 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Why a surface has no exact solution here; empty if it has one.
-std::string obstacle(const std::vector<solver::Surface>& surfaces) {
-  if (surfaces.size() > 1) return "no exact solution is known here for several shapes";
-  const solver::Surface& surface = surfaces.front();
-  if (exact_shape(surface) || is_elliptic(surface)) return "";
-  return fmt::format("no exact solution is known here for shape = \"{}\"{}", to_string(surface.shape),
-                     surface.inner_radius > 0.0 ? " with an inner radius" : "");
-}
-
 /// Whether the pressure moves the two surfaces sideways by different amounts, and the scene includes that.
 bool is_coupled(const solver::Scene& scene) {
   return scene.contact.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
 }
 
-/// Why no theory holds under a law of friction; empty if one may.
-std::string obstacle(const solver::FrictionLaw& law, const solver::Surface& surface) {
-  const bool any_shape =
-      law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
-  if ((any_shape && exact_shape(surface)) || law.is_coulomb() || surface.shape == solver::Shape::sphere)
-    return "";
-  return fmt::format("no exact solution is known here for shape = \"{}\" under friction_law = \"{}\"",
-                     to_string(surface.shape), to_string(law.kind));
-}
-
 /// Why no theory holds for a scene; empty if one may.
 std::string obstacle(const solver::Scene& scene) {
-  std::string of_surface = obstacle(scene.surfaces);
-  if (!of_surface.empty()) return of_surface;
+  const solver::FrictionLaw& law = scene.contact.friction;
+  const solver::Surface& surface = scene.surfaces.front();
+  const bool has_shape = exact_shape(surface).has_value();
+  if (scene.surfaces.size() > 1) return "no exact solution is known here for several shapes";
+  if (!has_shape && !is_elliptic(surface)) {
+    return fmt::format("no exact solution is known here for shape = \"{}\"{}", to_string(surface.shape),
+                       surface.inner_radius > 0.0 ? " with an inner radius" : "");
+  }
   if (scene.layer.kind != nullptr) {
     return fmt::format("no exact solution is known here for layer.kind = \"{}\"", scene.layer.kind->word);
   }
   if (scene.contact.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
-  if (scene.contact.friction.is_frictionless()) return "without friction there is no traction";
-  if (!scene.contact.friction.map.empty()) return "the friction comes from a map (contact.friction_map)";
-  return obstacle(scene.contact.friction, scene.surfaces.front());
+  if (law.is_frictionless()) return "without friction there is no traction";
+  if (!law.map.empty()) return "the friction comes from a map (contact.friction_map)";
+  const bool any_shape =
+      law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
+  if ((any_shape && has_shape) || law.is_coulomb() || surface.shape == solver::Shape::sphere) return "";
+  return fmt::format("no exact solution is known here for shape = \"{}\" under friction_law = \"{}\"",
+                     to_string(surface.shape), to_string(law.kind));
 }
 
 bool without_torsion(const solver::Step& step) {

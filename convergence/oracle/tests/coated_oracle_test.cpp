@@ -1,4 +1,4 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -12,8 +12,6 @@
 
 namespace slipstick::convergence {
 namespace {
-
-using ::testing::HasSubstr;
 
 solver::Scene coated(const std::vector<std::string>& overrides = {}) {
   return solver::read_scene(SLIPSTICK_SCENES "/coated_sphere.toml", overrides);
@@ -102,20 +100,7 @@ TEST(CoatedOracle, IsWhatTheSolverTendsTo) {
   }
 }
 
-TEST(CoatedOracle, SaysWhyItHasNoAnswer) {
-  const auto reason = [](const auto& change) {
-    solver::Scene scene = coated();
-    change(scene);
-    return find_oracle(scene).reason;
-  };
-  EXPECT_THAT(reason([](auto& scene) { scene.contact.coupling = solver::Coupling::automatic; }),
-              HasSubstr("contact.coupling"));
-  EXPECT_THAT(reason([](auto& scene) { scene.steps.front().force = {1.0, 0.0}; }), HasSubstr("force"));
-  EXPECT_THAT(reason([](auto& scene) { scene.surfaces.front().shape = solver::Shape::cone; }),
-              HasSubstr("cone"));
-  EXPECT_THAT(reason([](auto& scene) { scene.lower.coating->thickness = 1e-6; }), HasSubstr("thickness"));
-  EXPECT_THROW(law_contact(coated()), solver::InputError);
-}
+TEST(CoatedOracle, HasNoLaw) { EXPECT_THROW(law_contact(coated()), solver::InputError); }
 
 }  // namespace
 }  // namespace slipstick::convergence

@@ -114,48 +114,6 @@ TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
   }
 }
 
-// Under a cone the limit moment and the approach are off by h^2, tractions and pressure by h^1.5 to h^2 in
-// L1; the twist by about h^2 too, but its sign changes with the staircase of the stick area: 7e-4 bounds it
-// from 64 cells on.
-TEST(Comparison, ConeFallsWithTheMesh) {
-  for (const char* ratio : {"0.5", "0.9"}) {
-    const solver::Scene body = example("cone", {std::string("load.moment_ratio=") + ratio});
-    const Compared coarse = solve_scene(body, 32);
-    const Compared middle = solve_scene(body, 64);
-    const Compared fine = solve_scene(body, 128);
-    EXPECT_LE(std::abs(middle.errors.twist), 7e-4) << ratio;
-    EXPECT_LE(std::abs(fine.errors.twist), kTwistAt128) << ratio;
-    EXPECT_LE(std::abs(fine.errors.moment_limit), 1e-4) << ratio;
-    EXPECT_LE(std::abs(fine.errors.moment_limit), std::abs(coarse.errors.moment_limit) / 10.0) << ratio;
-    EXPECT_LE(fine.errors.traction.at_centres.l1, coarse.errors.traction.at_centres.l1 * std::pow(4.0, -1.2))
-        << ratio;
-    EXPECT_LE(fine.errors.traction.at_centres.l1, 2.5e-3) << ratio;
-    EXPECT_LE(fine.errors.pressure.l1, coarse.errors.pressure.l1 * std::pow(4.0, -1.4)) << ratio;
-    EXPECT_LE(std::abs(fine.errors.stick_radius), 1e-2) << ratio;  // half a cell of 124 across the contact
-    EXPECT_NEAR(fine.solution.approach / find_oracle(body).oracle->normal.approach, 1.0, 2e-5);
-  }
-}
-
-// The flat punch's pressure and traction are singular at an edge that the grid draws as a staircase: twist
-// and limit moment are off by about h, and values at cell centres do not converge in L2, where the exact
-// fields are not finite.
-TEST(Comparison, FlatPunchFallsWithTheMesh) {
-  for (const char* ratio : {"0.5", "0.9"}) {
-    const solver::Scene body = example("flat_punch", {std::string("load.moment_ratio=") + ratio});
-    const Compared coarse = solve_scene(body, 32);
-    const Compared middle = solve_scene(body, 64);
-    const Compared fine = solve_scene(body, 128);
-    EXPECT_LE(std::abs(middle.errors.twist), 0.6 * std::abs(coarse.errors.twist)) << ratio;
-    EXPECT_LE(std::abs(fine.errors.twist), 0.6 * std::abs(middle.errors.twist)) << ratio;
-    EXPECT_LE(std::abs(fine.errors.twist), 3e-3) << ratio;
-    EXPECT_LE(std::abs(middle.errors.moment_limit), 0.6 * std::abs(coarse.errors.moment_limit)) << ratio;
-    EXPECT_LE(std::abs(fine.errors.moment_limit), 0.6 * std::abs(middle.errors.moment_limit)) << ratio;
-    EXPECT_LE(std::abs(fine.errors.moment_limit), 2e-3) << ratio;
-    EXPECT_LE(std::abs(fine.errors.contact_radius), 1e-3) << ratio;
-    EXPECT_LE(std::abs(fine.errors.stick_radius), 2e-3) << ratio;
-  }
-}
-
 // The exact peak is infinite, and so is a cone's pressure in a cell at the axis.
 TEST(Comparison, LeavesOutWhatIsInfinite) {
   for (const char* name : {"cone", "flat_punch"}) {
@@ -164,41 +122,6 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
     for (const FieldError& field : {odd.errors.pressure, odd.errors.traction.at_centres}) {
       for (const double error : {field.l1, field.l2, field.max}) EXPECT_TRUE(std::isfinite(error)) << name;
     }
-  }
-}
-
-/// Sizes of the errors of the pressure in L1 and L2, of contact radius, peak, limit moment and approach:
-/// means over three grids of nearly the same cells, which lie differently under the edge.
-Eigen::Array<double, 6, 1> mean_errors(solver::Scene body, solver::Index across) {
-  const Oracle oracle = *find_oracle(body).oracle;
-  const solver::Index shape = body.grid.cells[0] / body.grid.cells[1];
-  Eigen::Array<double, 6, 1> sum = Eigen::Array<double, 6, 1>::Zero();
-  for (const solver::Index cells : {across, across + across / 16, across + across / 8}) {
-    body.grid.cells = {cells, cells / shape};
-    const solver::Solution solution = solver::solve(body);
-    EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-    const Errors errors = compare(solution, oracle);
-    Eigen::Array<double, 6, 1> found;
-    found << errors.pressure.l1, errors.pressure.l2, errors.contact_radius, errors.peak_pressure,
-        errors.moment_limit, solution.approach / oracle.normal.approach - 1.0;
-    sum += found.abs();
-  }
-  return sum / 3.0;
-}
-
-/// Hertz's ellipse along the grid and turned. The pressure's edge is a square root: h^1.5 in L1, h in L2;
-/// what answers to the contact as a whole goes with h^2, from about 64 cells on.
-TEST(Comparison, EllipticPressureFallsWithTheMesh) {
-  constexpr double expected[] = {1.5, 1.0, 2.0, 2.0, 2.0, 2.0};
-  constexpr double staircase = 0.4;  // what it leaves of orders over a factor 3 in h
-  for (const char* name : {"ellipse", "turned_ellipse"}) {
-    const solver::Scene ellipse = example(name);
-    const auto coarse = mean_errors(ellipse, 64);
-    const auto fine = mean_errors(ellipse, 192);
-    for (int k = 0; k < 6; ++k) {
-      EXPECT_GE(std::log(coarse[k] / fine[k]) / std::log(3.0), expected[k] - staircase) << name << " " << k;
-    }
-    EXPECT_LE(coarse.tail<4>().maxCoeff(), 2e-3) << name;  // (h/a)^2, of the circle of equal area
   }
 }
 

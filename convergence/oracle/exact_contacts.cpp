@@ -1,10 +1,12 @@
-#include "convergence/oracle/exact_theories.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
-#include "convergence/oracle/exact_shapes.hpp"
+#include "analytic/shear_bounds.hpp"
+#include "convergence/oracle/exact_theories.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -35,6 +37,58 @@ auto numbers(const solver::Material& material) {
 }
 
 }  // namespace
+
+std::optional<ExactShape> exact_shape(const solver::Surface& surface) {
+  using solver::Shape;
+  switch (surface.shape) {
+    case Shape::sphere:
+      return ExactShape{"hertz", {surface.radius}, 2.0};
+    case Shape::ellipsoid:
+      if (is_elliptic(surface)) return std::nullopt;
+      return ExactShape{"hertz", {surface.radius_1}, 2.0};
+    case Shape::cone:
+      return ExactShape{"cone", {surface.slope}, 1.0};
+    case Shape::flat_punch:
+      if (surface.inner_radius > 0.0) return std::nullopt;
+      return ExactShape{"flat_punch", {surface.radius}, std::numeric_limits<double>::infinity()};
+    case Shape::rounded_punch:
+      return ExactShape{"rounded_punch", {surface.flat_radius, surface.corner_radius}, std::nullopt};
+    case Shape::power:
+      return ExactShape{fmt::format("power:{}", surface.exponent), {surface.coefficient}, surface.exponent};
+    case Shape::height_map:
+    case Shape::roughness:
+      break;
+  }
+  return std::nullopt;
+}
+
+bool is_elliptic(const solver::Surface& surface) {
+  return surface.shape == solver::Shape::ellipsoid && surface.radius_1 != surface.radius_2;
+}
+
+std::optional<FrictionBound> find_friction_bound(const solver::FrictionLaw& law,
+                                                 std::shared_ptr<const analytic::Profile> pressure,
+                                                 double reference_pressure) {
+  const bool hertz = pressure.get() == &analytic::hertz_profile();
+  const double by_coefficient = law.coefficient * reference_pressure;
+  if (!law.map.empty() || law.factors) return std::nullopt;
+  switch (law.kind) {
+    case solver::FrictionKind::coulomb:
+      return FrictionBound{std::move(pressure), by_coefficient};
+    case solver::FrictionKind::tresca:
+      return FrictionBound{{&analytic::constant_bound_profile(), [](const analytic::Profile*) {}},
+                           law.shear_strength};
+    case solver::FrictionKind::capped:
+      if (!hertz) return std::nullopt;
+      return FrictionBound{analytic::capped_hertz_profile(std::min(1.0, law.shear_strength / by_coefficient)),
+                           by_coefficient};
+    case solver::FrictionKind::power:
+      if (!hertz) return std::nullopt;
+      return FrictionBound{analytic::power_of_hertz_profile(law.exponent),
+                           law.coefficient * std::pow(reference_pressure, law.exponent)};
+  }
+  return std::nullopt;
+}
 
 solver::Material surface_material(const solver::Material& body) {
   if (!body.coating) return body;
