@@ -1,5 +1,3 @@
-#include "convergence/check/causes.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/check/check.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"

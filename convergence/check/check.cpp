@@ -253,7 +253,7 @@ std::string FieldCheck::details() const {
 
 FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file,
                        const CheckOptions& options) {
-  Examination examination = examine(scene, file, {options.twist, options.columns, options.pressure_given});
+  Examination examination = examine(scene, file, options);
   Verdict verdict = reach_verdict(examination, options.tolerance);
   Explanation explanation = explain(examination, verdict);
   return {file, options, std::move(examination), std::move(verdict), std::move(explanation)};

@@ -213,16 +213,6 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
   return tried;
 }
 
-/// The median of an ordered excess, and the spread between its quartiles.
-struct Plateau {
-  explicit Plateau(const std::vector<double>& excess)
-      : middle(excess[excess.size() / 2]),
-        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
-
-  double middle;
-  double spread;
-};
-
 /// The highest value that many of some logarithms have, and how many.
 struct Highest {
   double value = 0.0;
@@ -325,10 +315,9 @@ std::optional<OtherFriction> friction_shown(const GivenContact& contact, const R
   constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
   const std::vector<double> excess = ring_excess(contact, right, regions);
   if (excess.empty()) return std::nullopt;
-  const Plateau shown(excess);
-  if (shown.spread <= kConstant * std::abs(shown.middle)) {
-    return multiple_of_law(contact, 1.0 + shown.middle);
-  }
+  const double middle = excess[excess.size() / 2];
+  const double spread = excess[excess.size() * 3 / 4] - excess[excess.size() / 4];
+  if (spread <= kConstant * std::abs(middle)) return multiple_of_law(contact, 1.0 + middle);
   return other_law(contact);
 }
 

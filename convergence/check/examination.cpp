@@ -162,7 +162,7 @@ class MeshMeasurement {
     regions_.inner = resized(contact.grid, grid_, regions.inner);
     const bool all = (regions.ring > 0.0).all();
     regions_.ring = all ? ArrayXd(ArrayXd::Ones(grid_.cells())) : resized(contact.grid, grid_, regions.ring);
-    errors_.pressures = errors_.tractions = ArrayXd::Zero(contact.pressure.size());
+    errors.pressures = errors.tractions = ArrayXd::Zero(contact.pressure.size());
   }
 
   /// Right pressures of the wide grid, against the one solved on its cells.
@@ -170,8 +170,8 @@ class MeshMeasurement {
     for (const ArrayXd& p :
          {sampled(wide.grid, fine), solver::restrict_to(wide.grid, finer(wide.grid), fine)}) {
       const ArrayXd off = deviation_from(wide.values, p);
-      errors_.deviation.pressure = std::max(errors_.deviation.pressure, off.sum() / wide.values.sum());
-      errors_.pressures = errors_.pressures.max(resized(wide.grid, contact_.grid, off));
+      errors.deviation.pressure = std::max(errors.deviation.pressure, off.sum() / wide.values.sum());
+      errors.pressures = errors.pressures.max(resized(wide.grid, contact_.grid, off));
     }
   }
 
@@ -180,22 +180,20 @@ class MeshMeasurement {
     const GivenContact field = with_fields(contact_, grid_, std::move(p), std::move(q));
     const LoadErrors loads =
         load_errors(sums_of(grid_, field.pressure, field.traction), meant, contact_.mean_friction());
-    errors_.loads = {.normal = std::max(errors_.loads.normal, loads.normal),
-                     .moment = std::max(errors_.loads.moment, loads.moment),
-                     .force = std::max(errors_.loads.force, loads.force)};
+    errors.loads = {.normal = std::max(errors.loads.normal, loads.normal),
+                    .moment = std::max(errors.loads.moment, loads.moment),
+                    .force = std::max(errors.loads.force, loads.force)};
     const State fitted = find_state(field, known_motion(field, load_, std::nullopt));
     const State reported = twist_reported_ ? find_state(field, known_motion(field, load_, twist)) : fitted;
     const RightAnswer right = find_right_answer(field, load_);
     Deviation deviation = find_deviation(field, right, reported, fitted, regions_);
-    deviation.pressure = errors_.deviation.pressure;
-    errors_.deviation = larger(errors_.deviation, deviation);
-    errors_.tractions =
-        errors_.tractions.max(resized(grid_, contact_.grid, solver::norms(field.traction - right.traction)));
-    errors_.direction =
-        std::max(errors_.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
+    deviation.pressure = errors.deviation.pressure;
+    errors.deviation = larger(errors.deviation, deviation);
+    errors.tractions =
+        errors.tractions.max(resized(grid_, contact_.grid, solver::norms(field.traction - right.traction)));
+    errors.direction =
+        std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   }
-
-  void take_moment_limit(double limit) { errors_.moment_limit = limit; }
 
   /// The exact answer shows an error that no finer mesh shows: its slip ring may be narrower than a cell.
   void add_exact(const Oracle& exact) {
@@ -210,13 +208,7 @@ class MeshMeasurement {
               exact.twist_angle);
   }
 
-  /// A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
-  void take_pressure_from_tractions() {
-    errors_.deviation.pressure = errors_.deviation.tractions;
-    errors_.pressures = errors_.tractions / contact_.mean_friction();
-  }
-
-  const MeshErrors& errors() const { return errors_; }
+  MeshErrors errors;
 
  private:
   const GivenContact& contact_;
@@ -224,7 +216,6 @@ class MeshMeasurement {
   Grid grid_;
   Regions regions_;
   bool twist_reported_;
-  MeshErrors errors_;
 };
 
 /// Answers and choices that do not come from the field.
@@ -251,14 +242,19 @@ MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene,
   if (found && wide) measurement.add_pressures(*wide, *found);
   const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
   const ArrayXd fine_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
-  measurement.take_moment_limit(solver::free_moment_limit(fine, fine_bound) / kChildrenOfCell);
+  MeshErrors& errors = measurement.errors;
+  errors.moment_limit = solver::free_moment_limit(fine, fine_bound) / kChildrenOfCell;
   const Sums sums = sums_of(fine, pressure, solution.traction);
   measurement.add_field(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
   measurement.add_field(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
                         solution.twist);
-  if (wide && !found) measurement.take_pressure_from_tractions();
+  if (wide && !found) {
+    // A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
+    errors.deviation.pressure = errors.deviation.tractions;
+    errors.pressures = errors.tractions / contact.mean_friction();
+  }
   if (wide && known.exact && known.exact->shear) measurement.add_exact(*known.exact);
-  return measurement.errors();
+  return errors;
 }
 
 ScenePressure on_field(const GivenContact& contact, const WidePressure& wide) {
@@ -387,7 +383,7 @@ double Examination::moment_limit() const {
 }
 
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    const ExaminationOptions& options) {
+                    const CheckOptions& options) {
   require_judgeable(scene);
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
@@ -430,7 +426,5 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
           .certificate = certify_field(contact, load, state, moment),
           .direction = noticeable_direction(contact, fitted, reference.mesh.deviation.tractions)};
 }
-
-double relative_error(double value, double exact) { return value / exact - 1.0; }
 
 }  // namespace slipstick::convergence

@@ -6,12 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "convergence/check/conventions.hpp"
 #include "convergence/check/deviation.hpp"
+#include "convergence/check/foreign_field.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "solver/contact/certificate.hpp"
 
 namespace slipstick::convergence {
+
+/// Options of a check. A good field is right within its mesh; discrete and strict make the check stricter.
+struct CheckOptions {
+  std::optional<double> twist = {};       ///< rad, that the program reported
+  std::vector<std::string> columns = {};  ///< names for a file without a header, or paths in an HDF5 file
+  bool discrete = false;                  ///< a good field solves its own grid's problem, with constant cells
+  bool strict = false;                    ///< a good field is in the scene's conventions
+  bool pressure_given = false;            ///< the pressure is not judged
+  /// Error allowed for loads, pressure, motion and tractions, instead of the one derived from the mesh.
+  std::optional<double> tolerance = {};
+};
 
 /// Differences between the loads that a field carries and the loads that its program meant.
 struct LoadErrors {
@@ -71,13 +82,6 @@ struct Examination {
   double moment_limit() const;  ///< of the field's pressure
 };
 
-/// How a field is read and examined.
-struct ExaminationOptions {
-  std::optional<double> twist = {};       ///< rad, that the program reported
-  std::vector<std::string> columns = {};  ///< as in read_foreign_field()
-  bool pressure_given = false;            ///< the pressure is not judged
-};
-
 /// Measures a field:
 ///
 ///  1. read_foreign_field() reads it, in_own_conventions() puts it into the scene's units and signs.
@@ -92,14 +96,11 @@ struct ExaminationOptions {
 /// Throws InputError for a history, for a scene without friction, and where read_foreign_field() or
 /// in_own_conventions() does; std::runtime_error where the reference's solve does not converge.
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    const ExaminationOptions& options);
+                    const CheckOptions& options);
 
 /// The pressure of a scene, of the contact's bodies, on the contact's cells. None where it cannot be solved
 /// on these.
 std::optional<ScenePressure> find_scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                                  const solver::Model& model);
-
-/// computed/exact - 1.
-double relative_error(double value, double exact);
 
 }  // namespace slipstick::convergence

@@ -1,5 +1,3 @@
-#include "convergence/check/verdict.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "convergence/check/diagnosis.hpp"
+#include "convergence/check/check.hpp"
+#include "convergence/oracle/errors.hpp"
 #include "solver/contact/fitted_motion.hpp"
 #include "solver/step/describe_step.hpp"
 

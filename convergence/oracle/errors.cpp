@@ -11,10 +11,6 @@ namespace {
 using Eigen::ArrayXd;
 using solver::Index;
 
-double relative_error(double value, double exact) {
-  return std::isfinite(exact) ? value / exact - 1.0 : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// |difference| / |exact vector|.
 double relative_difference(const std::array<double, 2>& value, const std::array<double, 2>& exact) {
   return std::hypot(value[0] - exact[0], value[1] - exact[1]) / std::hypot(exact[0], exact[1]);
@@ -270,6 +266,10 @@ FieldError sharpened_error(const std::vector<SharpenedCell>& cells, const solver
 }
 
 }  // namespace
+
+double relative_error(double value, double exact) {
+  return std::isfinite(exact) ? value / exact - 1.0 : std::numeric_limits<double>::quiet_NaN();
+}
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
   const Index cells = grid.cells();

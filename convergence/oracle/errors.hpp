@@ -59,6 +59,9 @@ struct ExactFields {
   Eigen::ArrayXd traction;  ///< 2*cells; NaN where the oracle does not know it
 };
 
+/// computed/exact - 1; NaN where the exact value is infinite or not known.
+double relative_error(double value, double exact);
+
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid);
 /// grid: m; traction: 2*cells, Pa.
 TractionError traction_error(const Eigen::ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid);

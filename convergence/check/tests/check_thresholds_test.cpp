@@ -25,6 +25,17 @@ struct RightField {
 /// The right field of the paper's scene on a coarse grid, with one error at a time.
 class CheckThreshold : public testing::Test {
  protected:
+  /// A field with an error a little below the allowed one holds, with one a little above it does not. made:
+  /// the field with an error; `within` of which its value is known.
+  void expect_threshold(const char* quantity, double allowed, double within,
+                        const std::function<FieldRows(double error)>& made) const {
+    for (const double times : {kBelow, kAbove}) {
+      const Json item = judgement(check_rows(made(times * allowed), field.scene), quantity);
+      EXPECT_NEAR(item["value"].get<double>(), times * allowed, within);
+      EXPECT_EQ(item["holds"], times < 1.0) << item;
+    }
+  }
+
   const RightField field{scene_of("paper", 32)};
 };
 
@@ -88,14 +99,12 @@ TEST_F(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
   const auto largest = std::ranges::max_element(
       field.rows, {}, [](const FieldRow& row) { return std::hypot(row[3], row[4]); });
   const auto place = static_cast<std::size_t>(largest - field.rows.begin());
-  for (const double times : {kBelow, kAbove}) {
+  expect_threshold("friction_bound", 1e-3, 1e-6, [&](double error) {
     FieldRows rows = field.rows;
     const double bound = field.scene.contact.friction.coefficient * rows[place][2];
-    scale_tractions(rows[place], (1.0 + times * 1e-3) * bound / std::hypot(rows[place][3], rows[place][4]));
-    const Json item = judgement(check_rows(rows, field.scene), "friction_bound");
-    EXPECT_NEAR(item["value"].get<double>(), times * 1e-3, 1e-6);
-    EXPECT_EQ(item["holds"], times < 1.0) << item;
-  }
+    scale_tractions(rows[place], (1.0 + error) * bound / std::hypot(rows[place][3], rows[place][4]));
+    return rows;
+  });
 }
 
 // The median of the ring: a thousandth, and twice what right fields of this mesh show.
@@ -104,15 +113,9 @@ TEST_F(CheckThreshold, OfFrictionIsAThousandthAndTheMesh) {
   EXPECT_GE(allowed_here, 1e-3);
   const solver::Scene finer = scene_of("paper", 64);
   EXPECT_NEAR(allowed(check_rows(solved(finer), finer), "friction"), 1.1e-3, 0.1e-3);  // as in the guide
-  for (const double times : {kBelow, kAbove}) {
-    const Json item = judgement(
-        check_rows(with_part(field, kSlipping, 2.0,
-                             [&](FieldRow& row) { scale_tractions(row, 1.0 - times * allowed_here); }),
-                   field.scene),
-        "friction");
-    EXPECT_NEAR(item["value"].get<double>(), times * allowed_here, 1e-6);
-    EXPECT_EQ(item["holds"], times < 1.0) << item;
-  }
+  expect_threshold("friction", allowed_here, 1e-6, [&](double error) {
+    return with_part(field, kSlipping, 2.0, [&](FieldRow& row) { scale_tractions(row, 1.0 - error); });
+  });
 }
 
 /// Whether the cell's column and row are together even: the squares of a chessboard.
@@ -133,14 +136,11 @@ TEST_F(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
   const Checked right = check_rows(field.rows, field.scene);
   const double mesh = right["yardstick"]["slip_direction"];
   EXPECT_NEAR(allowed(right, "slip_direction"), 0.1 + 2.0 * mesh, 1e-6);
-  for (const double times : {kBelow, kAbove}) {
-    const double degrees = times * (0.1 + 2.0 * mesh);
-    const FieldRows rows = with_part(field, kSlipping, 2.0, [&](FieldRow& row) {
+  expect_threshold("slip_direction", 0.1 + 2.0 * mesh, INFINITY, [&](double degrees) {
+    return with_part(field, kSlipping, 2.0, [&](FieldRow& row) {
       turn(row, is_white(row, field.solution.grid) ? degrees : -degrees);
     });
-    const Json item = judgement(check_rows(rows, field.scene), "slip_direction");
-    EXPECT_EQ(item["holds"], times < 1.0) << item;
-  }
+  });
 }
 
 // Two digits leave each component open by a part of 0.05: in the mean over |q|, sqrt(pi/2) times that as an
@@ -164,19 +164,13 @@ TEST_F(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
   for (const FieldRow& row : field.rows) sum += std::hypot(row[3], row[4]);
   int sticking = 0;
   with_part(field, 0.0, 0.8, [&](FieldRow&) { ++sticking; });
-  for (const double times : {kBelow, kAbove}) {
-    const double part = times * 2.0 * mesh;
-    const Checked result = check_rows(with_part(field, 0.0, 0.8,
-                                                [&](FieldRow& row) {
-                                                  const double size = part * sum / sticking;
-                                                  row[3] += is_white(row, field.solution.grid) ? size : -size;
-                                                }),
-                                      field.scene);
-    const Json item = judgement(result, "tractions");
-    EXPECT_NEAR(item["value"].get<double>() / part, 1.0, 1e-2);
-    EXPECT_EQ(result["yardstick"]["distance"], item["value"]);
-    EXPECT_EQ(item["holds"], times < 1.0) << item;
-  }
+  EXPECT_EQ(right["yardstick"]["distance"], judgement(right, "tractions")["value"]);
+  expect_threshold("tractions", 2.0 * mesh, 0.018 * mesh, [&](double part) {
+    return with_part(field, 0.0, 0.8, [&](FieldRow& row) {
+      const double size = part * sum / sticking;
+      row[3] += is_white(row, field.solution.grid) ? size : -size;
+    });
+  });
 }
 
 // Any iteration is allowed 1e-5, and the mesh twice what right fields show, at most 1e-3 with constant cells.
