@@ -5,7 +5,7 @@
 
 #include "analytic/axisymmetric.hpp"
 #include "convergence/check/loops/loop_record.hpp"
-#include "convergence/oracle/exact_shapes.hpp"
+#include "convergence/oracle/exact_theories.hpp"
 #include "convergence/oracle/law_contact.hpp"
 #include "solver/input/input_error.hpp"
 
