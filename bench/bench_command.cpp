@@ -8,6 +8,7 @@
 
 #include "bench/commands.hpp"
 #include "bench/plane/speed_error.hpp"
+#include "bench/scaling/crossovers.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/programs/python_script.hpp"
@@ -80,7 +81,9 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
                                                                    {"folder", (data / "finished").string()}});
   result = timed.result;
   convergence::write_json_file(data / "timings.json", result);
-  convergence::write_json_file(data / "scaling.json", timed.rest.at("scaling"));
+  Json laws = timed.rest.at("scaling");
+  laws["crossovers"] = crossovers(timed.rest.at("seconds"));
+  convergence::write_json_file(data / "scaling.json", laws);
 
   const Json plane = measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
                                     .output = data / "finished",
@@ -91,7 +94,8 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
-  text << timed.text << judged.text << "page: " << (folder / "index.html").string() << '\n';
+  text << crossovers_text(laws["crossovers"]) << judged.text << "page: " << (folder / "index.html").string()
+       << '\n';
   return 0;
 }
 

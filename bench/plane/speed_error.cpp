@@ -1,19 +1,17 @@
 #include "bench/plane/speed_error.hpp"
 
 #include <fmt/core.h>
-#include <gsl/gsl_cdf.h>
-#include <gsl/gsl_statistics_double.h>
 
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "bench/timing/checked_solve.hpp"
+#include "convergence/orders/crossover.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
@@ -48,11 +46,8 @@ std::map<std::string, double> values(const Errors& errors) {
 constexpr std::size_t kMinRepetitions = 3;
 constexpr std::size_t kMaxRepetitions = 9;
 constexpr double kEnoughSeconds = 1.0;
-constexpr double kUpperQuantile = 0.975;  // the upper end of a 95 % interval
 
-/// The median of repeated times with its 95 % interval: Student's, of their logarithms, widened as a median
-/// is less certain than a mean (the median of many normal deviates has sqrt(pi/2) of their mean's standard
-/// error).
+/// The median of repeated times with its 95 % interval.
 Json repeated_seconds(const std::function<double()>& work) {
   std::vector<double> seconds;
   double total = 0.0;
@@ -60,14 +55,8 @@ Json repeated_seconds(const std::function<double()>& work) {
     seconds.push_back(work());
     total += seconds.back();
   }
-  std::vector<double> logs;
-  for (const double one : seconds) logs.push_back(std::log(one));
-  const auto count = static_cast<double>(logs.size());
-  const double error = std::sqrt(0.5 * std::numbers::pi / count) * gsl_stats_sd(logs.data(), 1, logs.size());
-  const double factor = std::exp(error * gsl_cdf_tdist_Pinv(kUpperQuantile, count - 1.0));
-  const double median = std::exp(gsl_stats_median(logs.data(), 1, logs.size()));
-  return {
-      {"median", median}, {"low", median / factor}, {"high", median * factor}, {"repetitions", logs.size()}};
+  const convergence::TypicalSeconds time = convergence::typical(seconds);
+  return {{"median", time.seconds}, {"low", time.low}, {"high", time.high}, {"repetitions", seconds.size()}};
 }
 
 double root_mean_square(const std::vector<double>& values) {

@@ -65,6 +65,9 @@ READERS = {
     "timings.json": (TIMINGS, ("compare", "timings.json", "other.json", "--same-machine")),
 }
 
+if not (Path(PROGRAM).parent / "python/slipstick/_native").exists():
+    del READERS["timings.json"]  # which the Python package reads
+
 
 def changed(text, old, new):
     assert old in text, old
@@ -266,7 +269,7 @@ class HostileInput(ProgramTest):
             self.refused(name, "unreadable")
 
     def test_a_wrong_value_is_refused_with_its_key_and_what_is_allowed(self):
-        for name, text, says in DAMAGES:
+        for name, text, says in (damage for damage in DAMAGES if damage[0] in READERS):
             self.write(name, text)
             self.refused(name, text[:300], says)
 
@@ -277,8 +280,9 @@ class HostileInput(ProgramTest):
                                ("result.json", levels * '{"twist_error":' + "1" + levels * "}"),
                                ("loop.json", changed(JSON_LOOP, "[0,", "[" + levels * "[" + levels * "]" + ",")),
                                ("timings.json", changed(TIMINGS, '"num_cpus": 2', levels * '"a": {' + levels * "}"))):
-                self.write(name, text)
-                self.refused(name, levels, ("more than 200 deep",))
+                if name in READERS:
+                    self.write(name, text)
+                    self.refused(name, levels, ("more than 200 deep",))
         self.write("result.json", '{"twist_error": 0.5, "x": ' + 199 * "[" + 199 * "]" + "}")
         self.assertEqual(self.ends("result.json")[0], 0)
 

@@ -14,6 +14,7 @@ import jsonschema
 from schemas import ROOT, SCHEMAS, parse, problem, unexplained, validator
 
 PROGRAM = Path(sys.argv[1]).resolve()
+PACKAGE = PROGRAM.parent / "python/slipstick/_native"
 SCENES, FIELDS = ROOT / "convergence/scenes", ROOT / "convergence/check/fields"
 
 STUDY = f"""
@@ -229,6 +230,7 @@ class Results(unittest.TestCase):
         program.chmod(0o700)
         return program
 
+    @unittest.skipUnless(PACKAGE.exists(), "without the Python package")
     def test_comparison(self):
         base, slower, data = self.made_benchmarks(), self.made_benchmarks(1.2), self.folder / "ab"
         self.run_and_check("bench", "--program", slower, "--against", base, "--rounds", 10, "--output", data, code=1)
@@ -236,6 +238,7 @@ class Results(unittest.TestCase):
         self.run_and_check("compare", data / "base.json", data / "new.json", code=1)
         self.run_and_check("compare", data / "base.json", data / "base.json", code=2)
 
+    @unittest.skipUnless(PACKAGE.exists(), "without the Python package")
     def test_survey(self):
         """Up to the first point of the plane: all take a minute."""
         data = self.folder / "survey/data"

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
-#include "convergence/programs/package_module.hpp"
+#include "convergence/orders/crossover.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -81,10 +81,14 @@ void compare(PageProgram& row, const Json& result, const std::vector<std::string
   }
 }
 
-/// A number of the Python package, or the reason why it is missing.
-Number number_in(const Json& json, const std::string& key) {
-  const bool known = json.at(key).is_number();
-  return number_or(known ? json[key].get<double>() : kNaN, json.value(key + "_reason", ""));
+/// seconds: of each repetition.
+OperatorTime operator_time(const std::string& kind, double cells, const std::vector<double>& seconds) {
+  const TypicalSeconds time = typical(seconds);
+  return {.kind = kind,
+          .cells = cells,
+          .seconds = number_or(time.seconds, "it did not solve"),
+          .low = number_or(time.low, "one repetition"),
+          .high = number_or(time.high, "one repetition")};
 }
 
 std::string shown_number(double value, const char* unit) {
@@ -175,28 +179,23 @@ OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& sce
     }
   }
   const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
-  Json families;
+  OperatorTimes times;
+  std::map<std::string, Family> families;
   auto result = results.begin();
   for (const char* kind : kKinds) {
     for (const double cells : size.operator_cells) {
-      Json seconds;
+      std::vector<double> seconds;
       for (int k = 0; k < size.repetitions; ++k) seconds.push_back(seconds_of(*result++));
-      families[kind].push_back(Json::array({cells, seconds}));
+      families[kind].push_back({cells, seconds});
+      times.rows.push_back(operator_time(kind, cells, seconds));
     }
   }
-  const Json found = run_package_module("speed.growth", {{"families", families}}).result;
-  OperatorTimes times{.rows = {},
-                      .cells = number_in(found, "cells"),
-                      .low = number_in(found, "low"),
-                      .high = number_in(found, "high"),
-                      .remark = found.at("remark")};
-  for (const Json& row : found.at("rows")) {
-    times.rows.push_back({.kind = row.at("kind"),
-                          .cells = row.at("cells"),
-                          .seconds = number_in(row, "seconds"),
-                          .low = number_in(row, "low"),
-                          .high = number_in(row, "high")});
-  }
+  const Crossover crossover = find_crossover(families["direct"], families["dcfft"]);
+  const std::string outside = crossover.remark.empty() ? "outside the measured sizes" : crossover.remark;
+  times.cells = number_or(crossover.cells, outside);
+  times.low = number_or(crossover.low, outside);
+  times.high = number_or(crossover.high, outside);
+  times.remark = crossover.remark;
   return times;
 }
 

@@ -150,8 +150,10 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
         from . import growth  # needs SciPy
 
         file = survey(program, request["filter"], Path(request["folder"]), starter, request["seconds"], request["repetitions"])
-        laws = growth.scaling(timings.from_json(file, "timings.json"))
-        return {"result": file, "scaling": laws, "text": growth.crossovers_text(laws)}
+        read = timings.from_json(file, "timings.json")
+        seconds = {name: [(cells, [one for one in times if timings.is_valid_time(one)])
+                          for cells, times in growth.seconds_of(own).items()] for name, own in growth.families(read).items()}
+        return {"result": file, "scaling": {"families": growth.scaling(read)}, "seconds": seconds}
     base, now = request["base"], program if what == "builds" else request["now"]
     pairs = two_builds(base, now, request["filter"]) if what == "builds" else two_methods(program, base, now)
     return compare_pairs(pairs, request["rounds"], compare.Rules(effect=request["effect"]), base, now, starter)
