@@ -11,7 +11,6 @@
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/scene_page.hpp"
 #include "convergence/report/scene_verdict.hpp"
-#include "convergence/report/validation.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_spec.hpp"

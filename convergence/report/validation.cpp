@@ -1,4 +1,4 @@
-#include "convergence/report/validation.hpp"
+#include "convergence/report/scene_page.hpp"
 
 #include <fmt/core.h>
 
