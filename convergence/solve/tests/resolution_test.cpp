@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <ostream>
@@ -101,7 +102,8 @@ TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
   std::vector<double> over_error;
   int twists = 0;
   int areas = 0;
-  for (int k = 0; k < 30; ++k) {
+  const int scenes = std::getenv("SLIPSTICK_TEST_ALL") != nullptr ? 30 : 12;  // thirty each night
+  for (int k = 0; k < scenes; ++k) {
     const double ratio = std::pow(10.0, -4.0 + 3.2 * part(random));
     std::vector<std::string> settings = GetParam().settings;
     settings.push_back(fmt::format("load.moment_ratio={}", ratio));
@@ -117,9 +119,9 @@ TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
                          std::abs(json["twist_error"].get<double>()));
   }
   EXPECT_LE(twists, 1);
-  EXPECT_LE(areas, 1);  // of sixty
-  std::ranges::nth_element(over_error, over_error.begin() + 15);
-  EXPECT_LE(over_error[15], 10.0);  // the uncertainty is no gross overestimate
+  EXPECT_LE(areas, 1);  // of two a scene
+  std::ranges::sort(over_error);
+  EXPECT_LE(over_error[over_error.size() / 2], 10.0);  // the uncertainty is no gross overestimate
 }
 
 // An uncoated sphere of 200 GPa; an earlier formula stated 0.36 %, and the error is 0.71 %.

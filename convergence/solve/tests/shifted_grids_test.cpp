@@ -156,9 +156,9 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
   };
   constexpr double kWanted = 5e-3;
   int beyond = 0;
-  // Each night all twelve scenes, else half of them; the error of one exceeds its uncertainty.
+  // Each night all twelve scenes, else three of them; the error of one exceeds its uncertainty.
   const bool all = std::getenv("SLIPSTICK_TEST_ALL") != nullptr;
-  for (const double radius : all ? std::vector{0.002, 0.003, 0.005, 0.01} : std::vector{0.003, 0.01}) {
+  for (const double radius : all ? std::vector{0.002, 0.003, 0.005, 0.01} : std::vector{0.003}) {
     for (const double ratio : {0.85, 0.93, 0.97}) {
       solver::Scene scene = example("ellipse", {fmt::format("load.moment_ratio={}", ratio)});
       scene.surfaces[0].radius_1 = 0.3;
