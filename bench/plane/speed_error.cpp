@@ -18,7 +18,7 @@
 #include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "convergence/solve/cost.hpp"
+#include "convergence/solve/plan.hpp"
 #include "convergence/studies/study_run.hpp"
 #include "solver/model/make_model.hpp"
 

@@ -7,9 +7,10 @@
 #include "convergence/solve/measured_accuracy.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/solve.hpp"
 
-/// Chooses the mesh and the tolerance that reach a relative error, from measured data, and the next ones if
-/// the error is still too large.
+/// Chooses the mesh and the tolerance that reach a relative error, from measured data, finds the error of a
+/// solve, and chooses the next ones if it is too large.
 namespace slipstick::convergence {
 
 /// The finest mesh that is chosen, in cells across the contact: twice as fine as the finest measured mesh.
@@ -83,5 +84,23 @@ AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& cont
 std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactOnGrid& contact,
                                       const AccuracyTarget& target, const AccuracyChoice& before,
                                       double reached, double order);
+
+/// Safety factor of an estimated error.
+double estimation_safety(AccuracyOf of);
+
+/// The error of a solve, and its basis.
+struct ReachedError {
+  double error;     ///< relative, not negative; NaN where it is not known
+  std::string how;  ///< exact | estimated
+  std::string why;  ///< basis of the estimate, or why the error is not known
+};
+
+/// The error against the exact answer, if `errors` has it. Else an estimate from a second solve on half as
+/// many cells over the same extent. For a number it is the difference of the two over r^p - 1 with the
+/// theoretical order p, times Roache's safety factor 3 (1998) for two meshes. For the tractions it is the
+/// root mean square of the differences on the coarser cells over r^p - 1, in which nothing cancels,
+/// times 1.25. It is at least the error measured for smooth contacts on such a mesh.
+ReachedError reached_error(const solver::Scene& scene, const solver::Solution& solution,
+                           const ErrorsRecord& errors, AccuracyOf of);
 
 }  // namespace slipstick::convergence

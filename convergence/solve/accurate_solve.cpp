@@ -11,8 +11,6 @@
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
-#include "convergence/solve/cost.hpp"
-#include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {

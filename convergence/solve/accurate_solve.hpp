@@ -9,7 +9,6 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accuracy.hpp"
 #include "convergence/solve/plan.hpp"
-#include "convergence/solve/reached.hpp"
 #include "convergence/solve/shifted_grids.hpp"
 
 /// Solves to a relative error:

@@ -10,6 +10,7 @@
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/runs/worker.hpp"
 #include "convergence/solve/measured_accuracy.hpp"
 #include "convergence/solve/solve_request.hpp"
 #include "solver/input/field_file.hpp"
@@ -22,20 +23,15 @@ namespace {
 using solver::InputError;
 using solver::Scene;
 
-/// The options as the command line gives them.
+/// The options as the command line gives them, and the request that they make.
 struct SolveWords {
-  SceneFile source;
+  SolveRequest request;
   bool allow_programs = false;
   std::string model;               ///< word of solver.model; empty: the scene's
   std::optional<double> accuracy;  ///< relative error to reach
   std::string accuracy_of = "twist";
   std::vector<std::string> uncertain;  ///< "key=P%"
-  bool plan = false;
-  int planned_ranks = 1;
-  AnswerFiles files;
-  CheckpointFile checkpoint;  ///< file empty: none
-  std::string keep;           ///< folder for the results of a pool's worker; empty: none
-  solver::Ranks ranks;        ///< that share the solve
+  std::string keep;                    ///< folder for the results of a pool's worker; empty: none
 };
 
 void add_accuracy_options(CLI::App& command, SolveWords& words) {
@@ -59,10 +55,10 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
                   "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5% "
                   "young_modulus=2%; the result has the uncertainty of each output and its numerical error")
       ->excludes(command.get_option("--accuracy"));
-  command.add_flag("--plan", words.plan, "predict memory and time of the solve, and stop")
+  command.add_flag("--plan", words.request.plan, "predict memory and time of the solve, and stop")
       ->excludes(command.get_option("--uncertain"));
   command
-      .add_option("--ranks", words.planned_ranks,
+      .add_option("--ranks", words.request.planned_ranks,
                   "with --plan: number of MPI ranks that share the solve; the memory is that of one rank")
       ->needs(command.get_option("--plan"))
       ->excludes(command.get_option("--accuracy"))
@@ -71,19 +67,19 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
 
 void add_file_options(CLI::App& command, SolveWords& words) {
   command.add_option(
-      "--fields", words.files.fields,
+      "--fields", words.request.files.fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
       "last step, or each step to its own file where the name holds {step}");
   command
-      .add_option("--checkpoint", words.checkpoint.file,
+      .add_option("--checkpoint", words.request.checkpoint.file,
                   "write checkpoints of a load history to this HDF5 file, after the first step and then as "
                   "often as takes 1 % of the time")
       ->excludes(command.get_option("--accuracy"));
   command
-      .add_flag("--resume", words.checkpoint.resume,
+      .add_flag("--resume", words.request.checkpoint.resume,
                 "continue from the --checkpoint file if it exists; the result is the same as without a break")
       ->needs(command.get_option("--checkpoint"));
-  command.add_option("--figure", words.files.figure,
+  command.add_option("--figure", words.request.files.figure,
                      "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
 }
 
@@ -122,14 +118,16 @@ void require_shared_by_ranks(const SolveWords& words, const Scene& scene) {
 }
 
 /// Throws InputError where the scene's program may not run, and for options that no other program takes.
-void require_for_programs(const SolveWords& words, const Scene& scene) {
-  require_allowed(scene, {words.allow_programs, words.source.overrides});
-  const char* const option = words.accuracy                                     ? "--accuracy"
-                             : words.plan                                       ? "--plan"
-                             : !words.checkpoint.file.empty()                   ? "--checkpoint"
-                             : words.ranks.several()                            ? "several ranks"
-                             : scene.solver.model == solver::ModelChoice::exact ? "solver.model = \"exact\""
-                                                                                : nullptr;
+void require_for_programs(const SolveWords& words) {
+  const auto& [request, allow_programs, model, accuracy, accuracy_of, uncertain, keep] = words;
+  require_allowed(request.scene, {allow_programs, request.source.overrides});
+  const bool exact = request.scene.solver.model == solver::ModelChoice::exact;
+  const char* const option = accuracy                           ? "--accuracy"
+                             : request.plan                     ? "--plan"
+                             : !request.checkpoint.file.empty() ? "--checkpoint"
+                             : request.ranks.several()          ? "several ranks"
+                             : exact                            ? "solver.model = \"exact\""
+                                                                : nullptr;
   if (option == nullptr) return;
   throw InputError(option, "cannot be combined with solver.program; allowed: without it");
 }
@@ -145,73 +143,57 @@ void require_not_set(const std::vector<std::string>& overrides) {
   }
 }
 
-AccuracyTarget target_of(const SolveWords& words) {
+/// The target of --accuracy. The exact model is taken where it answers, unless the user chooses a model.
+void set_target(const SolveWords& words, SolveRequest& request) {
   AccuracyTarget target{.error = *words.accuracy};
   for (const auto& [word, of] : accuracy_words()) {
     if (word == words.accuracy_of) target.of = of;
   }
-  return target;
-}
-
-/// The exact model is taken where it answers, unless the user chooses a model.
-SolveRequest accurate_request(const SolveWords& words, Scene scene) {
-  const AccuracyTarget target = target_of(words);
-  require_not_set(words.source.overrides);
-  const bool chosen = solver::SceneReader(words.source.file, words.source.overrides).has("solver.model");
-  if (!chosen && answers_exactly(scene, target.of)) scene.solver.model = solver::ModelChoice::exact;
-  require_reachable(scene, target);
-  if (words.plan) return PlanAccuracy{std::move(scene), target};
-  if (scene.solver.model == solver::ModelChoice::exact) {
-    return AnswerExactlyTo{{std::move(scene), words.files}, target};
+  require_not_set(request.source.overrides);
+  const bool chosen = solver::SceneReader(request.source.file, request.source.overrides).has("solver.model");
+  if (!chosen && answers_exactly(request.scene, target.of)) {
+    request.scene.solver.model = solver::ModelChoice::exact;
   }
-  return SolveToAccuracy{std::move(scene), target, words.files};
+  require_reachable(request.scene, target);
+  request.target = target;
 }
 
-/// Chooses the way to solve by the options and the scene. Throws InputError for invalid combinations.
+/// Throws InputError for invalid combinations of options and scene.
 SolveRequest request_of(const CLI::App& command, SolveWords words) {
-  if (!words.keep.empty()) return ServeRuns{words.keep, words.source.memory_limit};
-  require_file_formats(words.files);
+  SolveRequest& request = words.request;
+  require_file_formats(request.files);
   if (!words.model.empty()) {
-    words.source.overrides.push_back(fmt::format("solver.model=\"{}\"", words.model));
+    request.source.overrides.push_back(fmt::format("solver.model=\"{}\"", words.model));
   }
-  const Scene scene = words.source.read();
-  if (!scene.solver.program.empty()) require_for_programs(words, scene);
-  if (words.ranks.several()) require_shared_by_ranks(words, scene);
-  require_scene_kept(command, words.files.fields, scene);
-  require_output("--fields", words.files.fields);
-  require_output("--checkpoint", words.checkpoint.file);
-  if (words.accuracy) return accurate_request(words, scene);
-  if (words.plan) return PlanSolve{scene, words.planned_ranks};
-  const std::vector<UncertainInput> uncertain = uncertain_inputs(words.source, words.uncertain);
-  const auto with_uncertainty = [&](auto solve) -> SolveRequest {
-    if (uncertain.empty()) return solve;
-    return SolveWithUncertainty{std::move(solve), words.source, uncertain};
-  };
-  if (scene.solver.model == solver::ModelChoice::exact) {
-    return with_uncertainty(AnswerExactly{scene, words.files, words.ranks});
-  }
-  std::optional<CheckpointFile> checkpoint;
-  if (!words.checkpoint.file.empty()) checkpoint = words.checkpoint;
-  return with_uncertainty(SolveOnGrid{words.source, scene, words.files, checkpoint, words.ranks});
+  request.scene = request.source.read();
+  if (!request.scene.solver.program.empty()) require_for_programs(words);
+  if (request.ranks.several()) require_shared_by_ranks(words, request.scene);
+  require_scene_kept(command, request.files.fields, request.scene);
+  require_output("--fields", request.files.fields);
+  require_output("--checkpoint", request.checkpoint.file);
+  if (words.accuracy) set_target(words, request);
+  if (!words.uncertain.empty()) request.uncertain = uncertain_inputs(request.source, words.uncertain);
+  return std::move(request);
 }
 
 int run_solve(const CLI::App& command, const SolveWords& words, std::ostream& text, Json& result) {
-  return std::visit([&](const auto& way) { return way.run(text, result); }, request_of(command, words));
+  if (!words.keep.empty()) return serve_runs(words.keep, words.request.source.memory_limit);
+  return run_request(request_of(command, words), text, result);
 }
 
 }  // namespace
 
 RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
   const auto words = std::make_shared<SolveWords>();
-  words->ranks = ranks;
+  words->request.ranks = ranks;
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
-  command->add_option("scene", words->source.file, "scene file (TOML)")->required();
-  add_set_option(*command, words->source.overrides,
+  command->add_option("scene", words->request.source.file, "scene file (TOML)")->required();
+  add_set_option(*command, words->request.source.overrides,
                  "override a key of the scene, e.g. load.moment_ratio=0.5");
-  add_program_options(*command, words->source.overrides, words->allow_programs);
+  add_program_options(*command, words->request.source.overrides, words->allow_programs);
   add_accuracy_options(*command, *words);
   add_file_options(*command, *words);
-  add_memory_option(*command, words->source.memory_limit);
+  add_memory_option(*command, words->request.source.memory_limit);
   constexpr const char* kHidden = "";
   command->add_option("--keep", words->keep, "folder that keeps the results of runs from standard input")
       ->group(kHidden);
