@@ -5,6 +5,7 @@ the pressure instead of superposed punches, mpmath's elliptic integrals instead 
 import csv
 import json
 import sys
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -45,6 +46,7 @@ def from_pressure(profile, c):
 
 
 class Certified(ProgramTest):
+    @cache
     def state(self, profile, given, value, radii=(), digits=40):
         words = ["exact", "--profile", profile, f"--{given.replace('_', '-')}={value}", "--certified", str(digits), "--json", "-"]
         return json.loads(self.run_program(*words, *(["--radius", ",".join(radii)] if radii else [])))
