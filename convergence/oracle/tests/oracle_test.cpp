@@ -268,7 +268,10 @@ TEST(Oracle, SaysWhyThereIsNone) {
                 "layer.kind"},
            Case{"coated_sphere", {"contact.coupling=auto"}, "contact.coupling"},
            Case{"coated_sphere", {"load.force=[1,0]"}, "force"},
-           Case{"coated_sphere", {"upper.shape=cone", "upper.slope=0.01"}, "cone"},
+           Case{"cone",
+                {"lower.layer.thickness=1e-4", "lower.layer.young_modulus=420e9",
+                 "lower.layer.poisson_ratio=0.25", "contact.coupling=none"},
+                "\"cone\" on a layer"},
            Case{"coated_sphere", {"lower.layer.thickness=1e-6"}, "thickness"},
        }) {
     const OracleAnswer answer = find_oracle(example(scene, overrides));
