@@ -50,14 +50,17 @@ def _force_law(gap: float) -> Any:
 
 def _contact(given: dict[str, Any]) -> Contact:
     exponent = given["radius_exponent"]
-    common = {key: given[key] for key in ("normal_load", "limit", "motion_unit")}
-    common.update(law_error=_LAW_ERROR, one_body=[math.inf if each is None else each for each in given["one_body"]])
+    def number(value: Optional[float]) -> float:  # JSON has no infinity
+        return math.inf if value is None else value
+
+    common: dict[str, Any] = {key: number(given[key]) for key in ("normal_load", "limit", "motion_unit")}
+    common.update(law_error=_LAW_ERROR, one_body=[number(each) for each in given["one_body"]])
     if "profile" not in given:
-        gap = math.inf if given["gap"] is None else given["gap"]
+        gap = number(given["gap"])
         others = {name: _force_law(other) for name, other in _GAPS.items() if other != gap}
         return Contact(loading=_force_law(gap), stiffness=4.0, limit_exponent=1.0, stiffness_exponent=exponent,
                        other_profiles=others, load_name="force", motion_name="displacement", rate_unit="mm/s", **common)
-    curve = TorsionCurve(given["profile"])
+    own, curve = given["profile"], TorsionCurve(given["profile"])
     limit = curve.moment_limit
 
     def over_own_limit(profile: str) -> Any:
@@ -65,9 +68,9 @@ def _contact(given: dict[str, Any]) -> Contact:
         return lambda t: law(t) * law.moment_limit / limit
 
     return Contact(loading=curve, stiffness=curve.stiffness, limit_exponent=1.0 + exponent, stiffness_exponent=3.0 * exponent,
-                   other_profiles={name: over_own_limit(other) for name, other in _PROFILES.items() if other != given["profile"]},
+                   other_profiles={name: over_own_limit(other) for name, other in _PROFILES.items() if other != own},
                    load_name="moment", motion_name="rotation", rate_unit="mrad/s", uniform_pressure_limit=2.0 / 3.0 / limit,
-                   sphere_limit=limit if given["profile"] == "hertz" else None, **common)
+                   sphere_limit=limit if own == "hertz" else None, **common)
 
 
 # ---------------------------------------------------------------- the judgement
