@@ -200,7 +200,9 @@ def fit(path: Path, law_error: float, starts: list[Start], families: list[Family
         own_starts = starts[:1] if not family.has_branches else starts[:_MAX_STARTS] if family.middle else starts
         fitters = [_Fitter(path, law_error, family, start, n > 0) for n, start in enumerate(own_starts)]
         grids = [(*fitter.on_grid(), fitter) for fitter in fitters]
-        tries += [(cost, k, fitter, parameters) for cost, parameters, fitter in sorted(grids, key=lambda grid: grid[0])[:most]]
+        equal = min(grid[0] for grid in grids) + _PRICE  # such starts are as good: the first of them has the least offset
+        grids = sorted(((max(cost, equal), *rest) for cost, *rest in grids), key=lambda grid: grid[0])[:most]
+        tries += [(cost, k, fitter, parameters) for cost, parameters, fitter in grids]
     found: dict[int, Hypothesis] = {}
     at_noise: set[int] = set()
     bar = math.inf
