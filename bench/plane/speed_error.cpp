@@ -75,12 +75,14 @@ void add_errors(Json& json, const std::map<std::string, std::vector<double>>& er
   }
 }
 
-std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, const PlaneRun& run) {
+std::vector<std::string> overrides_of(const Json& run) { return run.at("overrides"); }
+
+std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, const Json& run) {
   convergence::Study study;
   study.source = study.scene = scene;
-  study.overrides = run.overrides;
-  study.cells = {run.choice.at("cells").get<Index>()};
-  study.shifts = run.grids;
+  study.overrides = overrides_of(run);
+  study.cells = {run.at("choice").at("cells").get<Index>()};
+  study.shifts = run.at("grids");
   return convergence::make_series(study).front().meshes.front().grids;
 }
 
@@ -104,12 +106,8 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
 
 }  // namespace
 
-PlaneRun plane_run(const Json& json) {
-  return {json.at("choice"), json.at("grids"), json.at("overrides"), json.at("file"), json.at("label")};
-}
-
-Json measure_point(const std::filesystem::path& scene, const PlaneRun& run) {
-  Json json = run.choice;
+Json measure_point(const std::filesystem::path& scene, const Json& run) {
+  Json json = run.at("choice");
   std::map<std::string, std::vector<double>> errors;
   double across = 0.0;
   std::string invalid_reason;
@@ -141,14 +139,13 @@ Json measure_point(const std::filesystem::path& scene, const PlaneRun& run) {
 Json measure_load(const PlaneOptions& options, const Json& load, convergence::Progress& progress) {
   const convergence::ResultCache cache(options.output);
   Json scene{{"name", load.at("name")}, {"moment_ratio", load.at("moment_ratio")}, {"points", Json::array()}};
-  for (const Json& each : load.at("runs")) {
-    const PlaneRun run = plane_run(each);
+  for (const Json& run : load.at("runs")) {
     const std::string key =
-        convergence::prepare_run({.scene = options.scene, .overrides = run.overrides}).cache_key;
-    std::optional<Json> point = cache.find(run.file, key);
-    if (!point) cache.keep(run.file, key, point.emplace(measure_point(options.scene, run)));
+        convergence::prepare_run({.scene = options.scene, .overrides = overrides_of(run)}).cache_key;
+    std::optional<Json> point = cache.find(run.at("file"), key);
+    if (!point) cache.keep(run.at("file"), key, point.emplace(measure_point(options.scene, run)));
     scene["points"].push_back(*std::move(point));
-    progress.finished(run.label, 1.0);
+    progress.finished(run.at("label"), 1.0);
   }
   scene["exact"] = measure_exact(options.scene, load.at("moment_ratio"));
   return scene;

@@ -1,9 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/progress.hpp"
@@ -24,16 +21,6 @@ struct PlaneOptions {
   bool quick = false;
 };
 
-/// One point of the design.
-struct PlaneRun {
-  Json choice;                         ///< its keys in the result
-  int grids = 1;                       ///< whose edges lie differently in the cells
-  std::vector<std::string> overrides;  ///< of the scene
-  std::string file;                    ///< name of its kept result
-  std::string label;
-};
-PlaneRun plane_run(const Json& json);
-
 /// Measures the plane, points one after the other in this process, and shows its progress. Throws InputError
 /// for a scene that cannot be read or has no exact answer.
 Json measure_plane(const PlaneOptions& options);
@@ -41,7 +28,8 @@ Json measure_plane(const PlaneOptions& options);
 /// The points of one load of the design (finished ones are read from the output folder) and the exact side.
 Json measure_load(const PlaneOptions& options, const Json& load, convergence::Progress& progress);
 
-/// One point: errors on several grids, seconds on the first, unless the result is wrong.
-Json measure_point(const std::filesystem::path& scene, const PlaneRun& run);
+/// One point: errors on several grids, seconds on the first, unless the result is wrong. run: of the design,
+/// with its choice, grids (whose edges lie differently in the cells), overrides of the scene, file and label.
+Json measure_point(const std::filesystem::path& scene, const Json& run);
 
 }  // namespace slipstick::bench

@@ -23,15 +23,15 @@ namespace fs = std::filesystem;
 
 const fs::path kPaper = fs::path(SLIPSTICK_SCENES) / "paper.toml";
 
-/// The design's first point, on other cells.
-bench::PlaneRun run_on(int cells, double tolerance = 1e-8) {
-  return {
-      .choice = {{"cells", cells}},
-      .grids = 4,
-      .overrides = {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("solver.tolerance={}", tolerance),
-                    "solver.threads=1", "load.moment_ratio=0.9"},
-      .file = fmt::format("point-{}-{}", cells, tolerance),
-      .label = ""};
+/// A point as the design has them.
+Json run_on(int cells, double tolerance = 1e-8) {
+  return {{"choice", {{"cells", cells}}},
+          {"grids", 4},
+          {"overrides",
+           {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("solver.tolerance={}", tolerance),
+            "solver.threads=1", "load.moment_ratio=0.9"}},
+          {"file", fmt::format("point-{}-{}", cells, tolerance)},
+          {"label", ""}};
 }
 
 /// The error of a point is the root mean square of the errors of single solves.
@@ -39,7 +39,7 @@ TEST(PlanePoint, HasTheErrorsOfItsGrids) {
   const Json point = bench::measure_point(kPaper, run_on(24));
   ASSERT_EQ(point["errors"]["twist"].size(), 4U);
   const Json alone =
-      to_json(convergence::solve_scene(solver::read_scene(kPaper, run_on(24).overrides)).record);
+      to_json(convergence::solve_scene(solver::read_scene(kPaper, run_on(24)["overrides"])).record);
   EXPECT_DOUBLE_EQ(point["errors"]["twist"][0], alone["twist_error"]);
   EXPECT_DOUBLE_EQ(point["errors"]["traction_l2"][0], alone["traction_error"]["l2"]);
   double sum = 0.0;
@@ -85,17 +85,12 @@ TEST(InvalidReason, IsGivenForErrorsThatMeshAndToleranceDoNotExplain) {
 TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
-  const auto load = [](const std::vector<bench::PlaneRun>& runs) {
-    Json design{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", Json::array()}};
-    for (const auto& [choice, grids, overrides, file, label] : runs) {
-      design["runs"].push_back(
-          {{"choice", choice}, {"grids", grids}, {"overrides", overrides}, {"file", file}, {"label", label}});
-    }
-    return design;
+  const auto load = [](const Json& runs) {
+    return Json{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", runs}};
   };
   convergence::Progress progress(3, 3.0);
-  const Json first = bench::measure_load(options, load({run_on(16)}), progress);
-  const Json both = bench::measure_load(options, load({run_on(16), run_on(16, 1e-4)}), progress);
+  const Json first = bench::measure_load(options, load(Json::array({run_on(16)})), progress);
+  const Json both = bench::measure_load(options, load(Json::array({run_on(16), run_on(16, 1e-4)})), progress);
   ASSERT_EQ(both["points"].size(), 2U);
   EXPECT_EQ(both["points"][0], first["points"][0]);  // seconds and all: it was not measured again
   EXPECT_LE(both["exact"]["error"].get<double>(), 1e-13);
