@@ -78,9 +78,6 @@ def axes_of(figure):
 
 class Errors(unittest.TestCase):
     def panel(self, content=None):
-        return axes_of(study_figure.draw(content or study()).figure)[0]
-
-    def panel_alone(self, content=None):
         axis = style.Figure().subplots()
         study_figure.errors_panel(axis, study_result.read(content or study()), "twist_error")
         return axis
@@ -143,7 +140,7 @@ class Errors(unittest.TestCase):
         content = study(series={"one": series("coulomb", "solved")})
         for mesh, times in zip(content["series"]["one"]["meshes"], (0.1, 0.5, 1.0, 2.0)):
             mesh["twist_error"]["spread"] = times * abs(mesh["twist_error"]["mean"])
-        ends = [segment[:, 1] for bars in self.panel_alone(content).containers for bar in bars.lines[2]
+        ends = [segment[:, 1] for bars in self.panel(content).containers for bar in bars.lines[2]
                 for segment in bar.get_segments()]
         self.assertEqual(len(ends), len(CELLS))
         for low, high in ends:
@@ -155,13 +152,13 @@ class Errors(unittest.TestCase):
             for one in content["series"].values():
                 for mesh in one["meshes"]:
                     mesh["twist_error"]["mean"] *= scale
-            axis = self.panel_alone(content)
+            axis = self.panel(content)
             return np.log(10 * scale / np.array([8**2, 16**2]) / axis.get_ylim()[0]) / np.log(np.divide(*axis.get_ylim()))
 
         np.testing.assert_allclose(heights(1e-6), heights(1.0))
 
     def test_points_and_guides_take_most_of_their_panel(self):
-        low, high = np.log(self.panel_alone().get_ylim())
+        low, high = np.log(self.panel().get_ylim())
         least, most = np.log([1 / 64**2, 10 / 8**2])
         self.assertLess(most + np.log(4), high)  # the guides begin at four times the largest error
         self.assertGreater(least - low, 0.5 * 4 * 0.055 * (high - low))  # half of a legend of four entries
@@ -169,7 +166,7 @@ class Errors(unittest.TestCase):
 
     def test_more_entries_of_the_legend_have_more_room_below_the_points(self):
         few = study(series=dict(list(study()["series"].items())[:2]))
-        (low_of_few, high_of_few), (low, high) = self.panel_alone(few).get_ylim(), self.panel_alone().get_ylim()
+        (low_of_few, high_of_few), (low, high) = self.panel(few).get_ylim(), self.panel().get_ylim()
         self.assertLess(low, low_of_few)
         self.assertEqual(high, high_of_few)
 
