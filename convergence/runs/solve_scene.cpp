@@ -5,7 +5,7 @@
 #include "convergence/exchange/program_solve.hpp"
 #include "convergence/results/make_record.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
-#include "solver/elasticity/random_rounding.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/history/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/within_double.hpp"

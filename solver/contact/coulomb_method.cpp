@@ -20,41 +20,19 @@ using Eigen::ArrayXd;
 /// Torsion: q1 is even in x1 and odd in x2, q2 odd in x1 and even in x2.
 constexpr std::array<Parity, 2> kTorsionParities{{{1, -1}, {-1, 1}}};
 
-/// A rigid motion, or the load along it.
-enum class Motion { delta1, delta2, twist };
+/// By the motions (1, 0), (0, 1) and (-x2, x1); empty: not imposed, or not given.
+using PerMotion = std::array<std::optional<double>, 3>;
 
-/// The motions to be found, whose loads are imposed, and the given ones, in the order of the program's
-/// conditions.
-struct Conditions {
-  std::vector<Motion> imposed, given;
-
-  explicit Conditions(const TangentialProblem& problem) {
-    for (const Motion translation : {Motion::delta1, Motion::delta2}) {
-      if (problem.force) imposed.push_back(translation);
-      if (problem.displacement) given.push_back(translation);
-    }
-    if (problem.moment) imposed.push_back(Motion::twist);
-    if (problem.twist) given.push_back(Motion::twist);
-  }
-
-  /// The index of a motion among the imposed ones; empty: it is not imposed.
-  std::optional<Index> among_imposed(Motion motion) const {
-    const auto found = std::ranges::find(imposed, motion);
-    if (found == imposed.end()) return std::nullopt;
-    return found - imposed.begin();
-  }
-};
-
-/// Along one motion.
-std::optional<double> load_of(const TangentialProblem& problem, Motion motion) {
-  if (motion == Motion::twist) return problem.moment;
-  if (!problem.force) return std::nullopt;
-  return (*problem.force)[motion == Motion::delta1 ? 0 : 1];
+PerMotion per_motion(const std::optional<std::array<double, 2>>& translations,
+                     const std::optional<double>& rotation) {
+  if (!translations) return {std::nullopt, std::nullopt, rotation};
+  return {(*translations)[0], (*translations)[1], rotation};
 }
-std::optional<double> given_of(const TangentialProblem& problem, Motion motion) {
-  if (motion == Motion::twist) return problem.twist;
-  if (!problem.displacement) return std::nullopt;
-  return (*problem.displacement)[motion == Motion::delta1 ? 0 : 1];
+
+/// The loads along the motions to be found, and the given motions.
+PerMotion loads_of(const TangentialProblem& problem) { return per_motion(problem.force, problem.moment); }
+PerMotion given_of(const TangentialProblem& problem) {
+  return per_motion(problem.displacement, problem.twist);
 }
 
 /// The tangential problem on one grid: a NestedProblem.
@@ -98,12 +76,10 @@ class TangentialOnGrid {
     program.energy_before = problem_.energy_before;
     program.turns_into_itself = turns_;
     if (reference_.size() > 0) program.g = &reference_;
-    const Conditions conditions(problem_);
-    for (const Motion motion : conditions.imposed) {
-      program.imposed.push_back({&field(motion), *load_of(problem_, motion)});
-    }
-    for (const Motion motion : conditions.given) {
-      program.given.push_back({&field(motion), *given_of(problem_, motion)});
+    const PerMotion loads = loads_of(problem_), given = given_of(problem_);
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      if (loads[k]) program.imposed.push_back({&motions_[k], *loads[k]});
+      if (given[k]) program.given.push_back({&motions_[k], *given[k]});
     }
     return program;
   }
@@ -128,29 +104,29 @@ class TangentialOnGrid {
   }
 
  private:
-  const MotionField& field(Motion motion) const { return motions_[static_cast<std::size_t>(motion)]; }
-
   Grid grid_;
   TangentialProblem problem_;
   bool turns_;                          ///< its answer turns into itself under half a turn
-  std::array<MotionField, 3> motions_;  ///< by Motion: (1, 0), (0, 1) and (-x2, x1)
+  std::array<MotionField, 3> motions_;  ///< in the order of PerMotion
   ArrayXd reference_;
   Packing packing_;  ///< of the contact
 };
 
-/// Sets the solution's motions: found, given, or 0.
+/// Sets the solution's motions: found, given, or 0 if not modelled.
 void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
                      const TangentialProblem& problem) {
-  const Conditions conditions(problem);
-  const auto motion = [&](Motion of) {
-    if (const auto given = given_of(problem, of)) return *given;
-    const auto found = conditions.among_imposed(of);
-    if (!found) return 0.0;  // not modelled
-    return *found < newton.multipliers.size() ? newton.multipliers[*found]
-                                              : std::numeric_limits<double>::quiet_NaN();
-  };
-  solution.displacement = {motion(Motion::delta1), motion(Motion::delta2)};
-  solution.twist = motion(Motion::twist);
+  const PerMotion loads = loads_of(problem), given = given_of(problem);
+  std::array<double, 3> motion{};
+  Index found = 0;
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    if (given[k]) motion[k] = *given[k];
+    if (!loads[k]) continue;
+    motion[k] = found < newton.multipliers.size() ? newton.multipliers[found]
+                                                  : std::numeric_limits<double>::quiet_NaN();
+    ++found;
+  }
+  solution.displacement = {motion[0], motion[1]};
+  solution.twist = motion[2];
 }
 
 /// 1 where tractions stay within their bound. Slipping cells lie on their circle up to rounding; within it a

@@ -167,15 +167,6 @@ class Turns {
 
 }  // namespace
 
-ShearOpening::ShearOpening(const Elasticity& elasticity, const Grid& grid)
-    : op_(elasticity.make(grid, shear_kernel())) {}
-
-ArrayXd ShearOpening::operator()(const ArrayXd& traction) {
-  ArrayXd u(op_->grid().cells());
-  op_->apply(traction, u);
-  return -u;
-}
-
 CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
                                     const CoupledProblem& problem) {
   return Turns(elasticity, grid, problem).run();

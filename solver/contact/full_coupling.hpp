@@ -12,10 +12,14 @@ namespace slipstick::solver {
 /// displacement: K31(x) = K13(-x) = -K13(x).
 class ShearOpening {
  public:
-  ShearOpening(const Elasticity& elasticity, const Grid& grid);
+  ShearOpening(const Elasticity& elasticity, const Grid& grid) : op_(elasticity.make(grid, shear_kernel())) {}
 
   /// 2*cells values to cells values.
-  Eigen::ArrayXd operator()(const Eigen::ArrayXd& traction);
+  Eigen::ArrayXd operator()(const Eigen::ArrayXd& traction) {
+    Eigen::ArrayXd u(op_->grid().cells());
+    op_->apply(traction, u);
+    return -u;
+  }
 
  private:
   Cached<LinearOperator> op_;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <stdexcept>
 #include <utility>
-
-#include "solver/elasticity/random_rounding.hpp"
 
 namespace slipstick::solver {
 
@@ -21,11 +21,41 @@ OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kern
           .memory = memory};
 }
 
+/// An operator with random rounding, drawn from the seed: each displacement changes by up to an ulp of the
+/// largest one, and after each application the thread rounds either upward or downward until the next. Digits
+/// that agree for many seeds do not depend on compiler, processor or order of sums (Parker 1997, Monte Carlo
+/// arithmetic; Vignes 2004, random rounding).
+class RandomlyRounded final : public LinearOperator {
+ public:
+  RandomlyRounded(std::unique_ptr<LinearOperator> op, const BlockKernel& kernel, std::uint64_t seed)
+      : LinearOperator(op->grid(), kernel), op_(std::move(op)) {
+    std::seed_seq sequence{static_cast<std::uint64_t>(grid().n1), static_cast<std::uint64_t>(grid().n2),
+                           static_cast<std::uint64_t>(kernel.inputs), seed};
+    generator_.seed(sequence);
+  }
+
+ private:
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
+    op_->apply(traction, displacement);
+    double largest = 0.0;
+    for (const double u : displacement) largest = std::max(largest, std::abs(u));
+    const double ulp = std::numeric_limits<double>::epsilon() * largest;
+    for (double& u : displacement) u += ulp * (2.0 * drawn() - 1.0);
+    std::fesetround(drawn() < 0.5 ? FE_UPWARD : FE_DOWNWARD);
+  }
+
+  /// From 0 to 1, the same with every library.
+  double drawn() { return std::ldexp(static_cast<double>(generator_() >> 11U), -53); }
+
+  std::unique_ptr<LinearOperator> op_;
+  std::mt19937_64 generator_;
+};
+
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
                                              const BlockKernel& kernel) {
   auto op = make_operator(elasticity.kind, grid, kernel, *elasticity.law, options_of(elasticity, kernel));
-  return elasticity.rounding_seed == 0 ? std::move(op)
-                                       : rounded_at_random(std::move(op), kernel, elasticity.rounding_seed);
+  if (elasticity.rounding_seed == 0) return op;
+  return std::make_unique<RandomlyRounded>(std::move(op), kernel, elasticity.rounding_seed);
 }
 
 /// Doubles a cell of the padded grid, for each Part.

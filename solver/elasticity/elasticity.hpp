@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cfenv>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,6 +45,19 @@ struct GridOperators {
 
   std::unique_ptr<LinearOperator> op;
   std::unique_ptr<InverseSymbol> symbol;
+};
+
+/// Restores this thread's rounding direction at the end; optionally sets another one first.
+class KeptRounding {
+ public:
+  KeptRounding() : found_(std::fegetround()) {}
+  explicit KeptRounding(int direction) : KeptRounding() { std::fesetround(direction); }
+  ~KeptRounding() { std::fesetround(found_); }
+  KeptRounding(const KeptRounding&) = delete;
+  KeptRounding& operator=(const KeptRounding&) = delete;
+
+ private:
+  int found_;
 };
 
 /// Called with contact cells over all cells of the finest grid before Newton's method starts there; it may

@@ -4,9 +4,11 @@
 #include <limits>
 #include <string>
 
-#include "solver/newton/newton_state.hpp"
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/linear_operator.hpp"
+#include "solver/newton/admissible.hpp"
+#include "solver/newton/convex_program.hpp"
 #include "solver/newton/safeguards.hpp"
-#include "solver/newton/tangent_problem.hpp"
 
 namespace slipstick::solver {
 
@@ -26,6 +28,8 @@ struct NewtonSummary {
   Coefficients multipliers;                               ///< of the imposed conditions
   int iterations = 0;
   Safeguards safeguards;
+  Eigen::ArrayXd slip;          ///< K q + g - multipliers c in the contact cells, zero in others
+  Eigen::ArrayXd displacement;  ///< K q
 };
 
 /// Semismooth Newton method on the natural map q = P(q - rho (Kq + g - multipliers c)) of a convex program
@@ -41,49 +45,12 @@ struct NewtonSummary {
 /// 5. The step ends where the energy along it is least; the set is convex. If the energy does not fall the
 ///    step is halved, and at last replaced by a projected gradient step, which always descends. Again from 1.
 ///
-/// Compiled for both sets.
+/// Improves q, any field of the right size, until its certificate holds: this rank's rows of it. packing: of
+/// all fields, the contact cells. multipliers: guesses for the imposed conditions, or empty. Compiled for
+/// both sets.
 template <AdmissibleSet Set>
-class NaturalMapNewton {
- public:
-  using ArrayXd = Eigen::ArrayXd;
-
-  /// packing: of all fields, the contact cells.
-  NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol,
-                   Packing& packing);
-
-  /// Improves q, any field of the right size, until its certificate holds: this rank's rows of it.
-  /// multipliers: guesses for the imposed conditions, or empty.
-  NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options);
-
-  /// After run(), and before take_displacement(): K q + g - multipliers c in the contact cells, zero in
-  /// others.
-  ArrayXd take_slip() { return state_.take_slip(); }
-  /// After run(): K q.
-  ArrayXd take_displacement() { return state_.take_displacement(); }
-
-  long applications() const { return state_.op().applications(); }
-
- private:
-  static constexpr bool kIsScalar = Set::kComponents == 1;
-
-  bool take_newton_step(ArrayXd& q, const LinearTarget& target);
-  bool take_gradient_step(ArrayXd& q);
-  bool solve_linear(const ArrayXd& q, const LinearTarget& target, const Coefficients& loads = {});
-  void write_trial(const ArrayXd& q, double length);
-  Coefficients jump_loads(const ArrayXd& q);
-  bool restore_along_conditions();
-  double multiplier_error(const Coefficients& last, double part_of_gap) const;
-  bool refine(const ArrayXd& q, double tolerance, double error, NewtonSummary& summary);
-  NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
-                     const std::string& why);
-
-  NewtonState<Set> state_;
-  TangentProblem<Set> linear_;
-  Trial trial_;
-  Safeguards safeguards_;  ///< of this run
-};
-
-extern template class NaturalMapNewton<FrictionDiscs>;
-extern template class NaturalMapNewton<PositivePressures>;
+NewtonSummary minimise(const Set& set, const ConvexProgram& program, LinearOperator& op,
+                       InverseSymbol& symbol, Packing& packing, Eigen::ArrayXd& q,
+                       const Coefficients& multipliers, const NewtonOptions& options);
 
 }  // namespace slipstick::solver

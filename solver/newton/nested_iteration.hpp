@@ -69,13 +69,12 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
     if (on_cells_known) on_cells_known(result.part);
     const auto admissible = problem.admissible();
     result.field = packing.packed(result.field);
-    NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, op,
-                                                                       *operators->symbol, packing);
-    result.newton = newton.run(result.field, multipliers, options);
+    result.newton =
+        minimise(admissible, program, op, *operators->symbol, packing, result.field, multipliers, options);
     result.safeguards += result.newton.safeguards;
     iterations += result.newton.iterations;
-    result.slip = newton.take_slip();
-    result.displacement = newton.take_displacement();
+    result.slip = std::move(result.newton.slip);
+    result.displacement = std::move(result.newton.displacement);
   } while (problem.missed_contact_cells(op, result, options.tolerance));
   result.grids.push_back({grid.n1, grid.n2, op.applications(), iterations, result.newton.gap});
 }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "solver/contact/full_coupling.hpp"
-#include "solver/elasticity/random_rounding.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/model/memory_plan.hpp"
 #include "solver/step/grid_edge.hpp"
 #include "solver/step/pressure.hpp"
