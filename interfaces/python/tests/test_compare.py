@@ -72,16 +72,11 @@ class ComparisonTest(unittest.TestCase):
         self.assertEqual(it.base_repetitions, REPETITIONS)
 
     def test_only_a_change_that_counts_is_slower(self):
-        self.expect(changed(1.15), "slower", 1)
+        for factor, finding, code, effect in ((1.15, "slower", 1, 0.1), (1.0, "same", 0, 0.1), (1 / 1.08, "same", 0, 0.1),
+                                              (1 / 1.15, "quicker", 0, 0.1), (1.08, "slower", 1, 0.05), (1.15, "same", 0, 0.2)):
+            self.expect(changed(factor), finding, code, effect=effect)
         self.expect(changed(1.08), "same", 0)  # significant, but too small to count
         self.assertLess(found(compare(*changed(1.08))).p_value, 0.01)
-        self.expect(changed(1.0), "same", 0)
-        self.expect(changed(1 / 1.08), "same", 0)
-        self.expect(changed(1 / 1.15), "quicker", 0)
-        self.expect(changed(1.08), "slower", 1, effect=0.05)
-        self.expect(changed(1.15), "same", 0, effect=0.2)
-
-    def test_says_where_an_interval_leaves_more_open_than_a_pass(self):
         self.expect(changed(1.06), "same", 0, "slower, below what counts")
         scattered = [1e-3 * (1 + 0.05 * i) for i in range(10)]
         self.expect(run_of([timed("it", scattered)], [timed("it", scattered[::-1])]), "same", 0,
@@ -123,34 +118,27 @@ class ComparisonTest(unittest.TestCase):
         self.assertIn("12 repetitions", few.benchmarks[0].remark)
         self.assertFalse(compare(*draw(generator, 30, 11, False)).paired)
 
-    def test_benchmarks_in_one_file_are_reported(self):
-        a, b, it, new = (steady(name, 1e-3, 5) for name in ("a", "b", "it", "new"))
-        self.expect(run_of([it], []), "only in base", 2)
-        self.expect(run_of([], [it]), "only in new", 2)
-        self.assertEqual(compare(*run_of([a], [b], 0)).exit_code(), 2)
-        names = [benchmark.name for benchmark in compare(*run_of([b, a], [new, a, b], 0)).benchmarks]
-        self.assertEqual(names, ["b", "a", "new"])  # the base's order
-
-    def test_failures_count_where_they_are_new(self):
-        good, failed, skipped = steady("it", 1e-3, 1), Benchmark("it", error="disagrees"), Benchmark("it", skipped="no GPU")
-        self.expect(run_of([good], [failed]), "failed", 1, "disagrees")
-        self.expect(run_of([failed], [good]), "not timed", 2, "in the base")
-        self.expect(run_of([failed], [failed]), "not timed", 2, "in the base")
-        self.expect(run_of([good], [skipped]), "not timed", 2, "skipped: no GPU")
-        self.expect(run_of([good], [Benchmark("it")]), "not timed", 2, "aggregates only")
+    def test_benchmarks_in_one_file_and_failures_are_reported(self):
+        a, b, good, new = (steady(name, 1e-3, 5) for name in ("a", "b", "it", "new"))
+        failed, skipped, bad = Benchmark("it", error="disagrees"), Benchmark("it", skipped="no GPU"), copy.deepcopy(good)
+        for base, now, finding, code, remark in (
+                ([good], [], "only in base", 2, ""), ([], [good], "only in new", 2, ""),
+                ([good], [failed], "failed", 1, "disagrees"), ([failed], [good], "not timed", 2, "in the base"),
+                ([failed], [failed], "not timed", 2, "in the base"), ([good], [skipped], "not timed", 2, "skipped: no GPU"),
+                ([good], [Benchmark("it")], "not timed", 2, "aggregates only")):
+            self.expect(run_of(base, now), finding, code, remark)
         for time in (math.nan, math.inf, 0.0, -1.0):
-            bad = copy.deepcopy(good)
             bad.real[4] = time
             self.expect(run_of([good], [bad]), "failed", 1)
             self.expect(run_of([bad], [good]), "not timed", 2)
-
-    def test_nothing_compared_is_no_pass(self):
-        self.assertEqual(Comparison().exit_code(), 2)
+        self.assertEqual((compare(*run_of([a], [b], 0)).exit_code(), Comparison().exit_code()), (2, 2))
+        names = [benchmark.name for benchmark in compare(*run_of([b, a], [new, a, b], 0)).benchmarks]
+        self.assertEqual(names, ["b", "a", "new"])  # the base's order
 
     def test_rules_that_mean_nothing_are_refused(self):
-        for key, values in (("effect", (0.0, -0.1, math.nan)), ("level", (0.0, 1.0, math.nan))):
-            for value in values:
-                self.assertRaises(ValueError, Rules, **{key: value})
+        for rules in (*({"effect": value} for value in (0.0, -0.1, math.nan)),
+                      *({"level": value} for value in (0.0, 1.0, math.nan))):
+            self.assertRaises(ValueError, Rules, **rules)
 
 
 class ObstaclesTest(unittest.TestCase):

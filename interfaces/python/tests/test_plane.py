@@ -6,7 +6,7 @@ from pathlib import Path
 
 from slipstick.errors import InputError
 from slipstick.speed import plane
-from slipstick.speed.plane import Way, pareto_front, quickest_to
+from slipstick.speed.plane import pareto_front, quickest_to
 
 ACCURACY = Path(__file__).resolve().parents[3] / "convergence/solve/accuracy.toml"
 
@@ -33,10 +33,10 @@ class EnvelopeTest(unittest.TestCase):
                 ([(1.0, 0.5), (1.0, 0.5)], [0, 1]),  # both of a tie
                 ([(2.0, 0.5), (1.0, 0.5), (1.0, 0.6)], [1]),
                 ([(1.0, math.nan), (math.nan, 0.1), (2.0, 0.5), (0.1, math.inf)], [2])):
-            self.assertEqual(pareto_front([Way(*way) for way in ways]), front)
+            self.assertEqual(pareto_front(ways), front)
 
     def test_finds_the_quickest_of_those_as_good(self):
-        ways = [Way(3.0, 1e-3), Way(2.0, 1e-2), Way(1.0, 1e-1), Way(0.1, math.nan)]
+        ways = [(3.0, 1e-3), (2.0, 1e-2), (1.0, 1e-1), (0.1, math.nan)]
         self.assertEqual([quickest_to(ways, error) for error in (1e-2, 5e-3, 1.0, 1e-4)], [1, 0, 2, None])
 
 

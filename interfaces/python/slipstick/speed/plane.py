@@ -6,7 +6,7 @@ errors that it buys (docs/schema/plane.schema.json).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, Tuple
 
 from ..errors import InputError
 
@@ -89,38 +89,32 @@ def design(quick: bool) -> list[dict[str, Any]]:
 
 # ---------------------------------------------------------------- judgement
 
-class Way(NamedTuple):
-    """One way to an answer. A NaN is worse than any number."""
-    seconds: float
-    error: float
+Way = Tuple[float, float]  # to an answer: seconds and error; a NaN is worse than any number
 
-    def is_number(self) -> bool:
-        return math.isfinite(self.seconds) and math.isfinite(self.error)
+
+def _is_number(way: Way) -> bool:
+    return all(map(math.isfinite, way))
 
 
 def pareto_front(ways: list[Way]) -> list[int]:
     """Indices of the ways that no other way beats, quickest first. A way beats another if it is at least as quick and as good,
     and better in one of the two; of equal ways none beats another."""
-    known = [way for way in ways if way.is_number()]
-    front = [i for i, way in enumerate(ways) if way.is_number() and not any(
-        other.seconds <= way.seconds and other.error <= way.error and other != way for other in known)]
-    return sorted(front, key=lambda i: ways[i].seconds)
+    known = list(filter(_is_number, ways))
+    front = [i for i, way in enumerate(ways) if _is_number(way) and not any(
+        seconds <= way[0] and error <= way[1] and (seconds, error) != way for seconds, error in known)]
+    return sorted(front, key=lambda i: ways[i][0])
 
 
 def quickest_to(ways: list[Way], error: float) -> int | None:
     """The quickest way with at most this error; None if no way is as good."""
-    good = [i for i, way in enumerate(ways) if way.is_number() and way.error <= error]
-    return min(good, key=lambda i: ways[i].seconds, default=None)
+    good = [i for i, way in enumerate(ways) if _is_number(way) and way[1] <= error]
+    return min(good, key=lambda i: ways[i][0], default=None)
 
 
 def _ways_to(points: list[Point], quantity: str, method: str) -> list[Way]:
     """The points as ways to one quantity, place by place; not a number where not timed, or of another method."""
-    def way(point: Point) -> Way:
-        counts = point["seconds"] is not None and method in ("any", point["method"])
-        error = point["error"][quantity]
-        return Way(point["seconds"]["median"] if counts else math.nan, math.nan if error is None else error)
-
-    return [way(point) for point in points]
+    return [(point["seconds"]["median"] if point["seconds"] and method in ("any", point["method"]) else math.nan,
+             math.nan if point["error"][quantity] is None else point["error"][quantity]) for point in points]
 
 
 def _time_to(points: list[Point], quantity: str, method: str, error: float) -> dict[str, Any]:
@@ -128,9 +122,9 @@ def _time_to(points: list[Point], quantity: str, method: str, error: float) -> d
     row: dict[str, Any] = {"quantity": quantity, "error": error, "method": method}
     place = quickest_to(ways, error)
     if place is not None:
-        return {**row, "point": place, "seconds": ways[place].seconds}
-    best = min(pareto_front(ways), key=lambda i: ways[i].error, default=None)
-    why = "no timed point" if best is None else f"the best is {ways[best].error:.2g}, on {{0}} x {{0}} cells".format(
+        return {**row, "point": place, "seconds": ways[place][0]}
+    best = min(pareto_front(ways), key=lambda i: ways[i][1], default=None)
+    why = "no timed point" if best is None else f"the best is {ways[best][1]:.2g}, on {{0}} x {{0}} cells".format(
         points[best]["cells"])
     return {**row, "seconds": None, "seconds_reason": why, "point": None, "reason": why}
 
