@@ -14,7 +14,6 @@ target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJ
 # Counts the work that solves take: the linker puts the functions of work/work_counts.cpp in the place of those counted.
 add_executable(slipstick_work work/work_program.cpp work/work_counts.cpp)
 slipstick_configure(slipstick_work)
-target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
 target_link_libraries(slipstick_work PRIVATE slipstick::convergence slipstick::solver slipstick::allocations PkgConfig::FFTW
   CLI11::CLI11 fmt::fmt)
 target_compile_definitions(slipstick_work PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")

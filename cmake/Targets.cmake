@@ -40,9 +40,9 @@ function(slipstick_compile_by_folder target sources)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${folder}")
   endforeach()
 endfunction()
-# The sources of a program are compiled six at a time, so that both of two cores have work.
+# The sources of a program are compiled nine at a time, so that both of two cores have work.
 function(slipstick_compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SLIPSTICK_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SLIPSTICK_UNITY} UNITY_BUILD_BATCH_SIZE 9)
 endfunction()
 
 # slipstick_library(<folder> SOURCES ... PUBLIC <libraries> PRIVATE <libraries>)
@@ -93,23 +93,14 @@ endfunction()
 # mutants) on an idle machine.
 set(SLIPSTICK_TEST_HANGS 3600)
 
-# slipstick_headers(<name> HEADERS ... LIBRARIES ...): precompiled headers for several targets; set their flags after this.
-function(slipstick_headers name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
-  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/headers.cpp)
-  slipstick_configure(${name})
-  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen)
-  target_precompile_headers(${name} PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp> ${ARG_HEADERS})
-endfunction()
-slipstick_headers(slipstick_command_headers HEADERS <CLI/CLI.hpp> LIBRARIES CLI11::CLI11)
-slipstick_compile_unoptimised(slipstick_command_headers)
+# Compiled once for all programs of tests: precompiled headers, and two sources.
 if(SLIPSTICK_TESTS)
-  slipstick_headers(slipstick_test_headers HEADERS <gmock/gmock.h> <gtest/gtest.h> LIBRARIES GTest::gmock)
+  add_library(slipstick_test_headers OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/headers.cpp)
+  slipstick_configure(slipstick_test_headers)
   slipstick_compile_unoptimised(slipstick_test_headers)
-endif()
-
-# Compiled once for all programs of tests.
-if(SLIPSTICK_TESTS)
+  target_link_libraries(slipstick_test_headers PRIVATE GTest::gmock fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen)
+  target_precompile_headers(slipstick_test_headers PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp> <gmock/gmock.h>
+    <gtest/gtest.h>)
   foreach(part temporary_folder replay)
     add_library(slipstick_test_${part} OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/tests/${part}.cpp)
     target_link_libraries(slipstick_test_${part} PRIVATE GTest::gtest)
