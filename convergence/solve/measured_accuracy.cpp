@@ -28,7 +28,6 @@ MeasuredMesh mesh_of(const toml::table& table) {
   MeasuredMesh mesh{.cells_across = value_in(table["cells_across"]),
                     .errors = {},
                     .tolerances = values_in(table["tolerances"]),
-                    .applications = values_in(table["applications"]),
                     .work = values_in(table["work"])};
   for (const auto& [word, of] : accuracy_words()) {
     mesh.errors[static_cast<std::size_t>(of)] = {value_in(table[word]["error"]),

@@ -29,7 +29,6 @@ struct MeasuredMesh {
   double cells_across;                            ///< the contact's diameter over a cell's side
   std::array<MeasuredError, kAccuracies> errors;  ///< as AccuracyOf
   std::vector<double> tolerances;                 ///< falling
-  std::vector<double> applications;               ///< at each tolerance, the most over the loads
   std::vector<double> work;                       ///< at each tolerance, the most over the loads
 };
 

@@ -25,7 +25,6 @@ AccuracyData made_data(double order) {
     data.meshes.push_back({.cells_across = cells,
                            .errors = {{{error, 0.1 * error}, {error, 0.1 * error}, {error, 0.1 * error}}},
                            .tolerances = {1e-2, 1e-4},
-                           .applications = {5.0, 10.0},
                            .work = {cells * cells, 3.0 * cells * cells}});
   }
   return data;
@@ -58,7 +57,7 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
   const AccuracyData data = accuracy_data();
   ASSERT_GE(data.meshes.size(), 3U);
   for (std::size_t i = 1; i < data.meshes.size(); ++i) {
-    const auto& [across, errors, tolerances, applications, work] = data.meshes[i];
+    const auto& [across, errors, tolerances, work] = data.meshes[i];
     EXPECT_GT(across, data.meshes[i - 1].cells_across);
     for (std::size_t q = 0; q < kAccuracies; ++q) {
       EXPECT_LE(errors[q].error, data.meshes[i - 1].errors[q].error);
