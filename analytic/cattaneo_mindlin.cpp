@@ -38,10 +38,10 @@ double SelfSimilarIndenter::pressure(double load, double radius) const {
 
 namespace tangential {
 
-namespace {
-
-/// The state at ln(1 - F/(mu W)): each member is a power of 1 - F/(mu W).
-TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter) {
+TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter) {
+  if (!(force_ratio >= 0 && force_ratio < 1)) out_of_range("F/(mu W)", force_ratio, "0 <= F/(mu W) < 1");
+  // Each member is a power of 1 - F/(mu W).
+  const double log_deficit = std::log1p(-force_ratio);
   const double power = indenter.radius_power();
   const double stick = std::exp(power * log_deficit);
   return {.force_ratio = -std::expm1(log_deficit),
@@ -50,22 +50,6 @@ TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter
           .stick_complement = -std::expm1(power * log_deficit),
           .displacement = -std::expm1((1 - power) * log_deficit) / (4 * (1 - power)),
           .tangent_stiffness = 4 * stick};
-}
-
-}  // namespace
-
-TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter) {
-  if (!(force_ratio >= 0 && force_ratio < 1)) out_of_range("F/(mu W)", force_ratio, "0 <= F/(mu W) < 1");
-  return state_at(std::log1p(-force_ratio), indenter);
-}
-
-TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter) {
-  const double power = 1 - indenter.radius_power();
-  const double share = 4 * power * displacement;
-  if (!(displacement >= 0 && share < 1))
-    out_of_range("G_t a delta/(mu W)", displacement,
-                 fmt::format("from 0 to below {:.6g}, where everything slips", 1 / (4 * power)));
-  return state_at(std::log1p(-share) / power, indenter);
 }
 
 double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter) {

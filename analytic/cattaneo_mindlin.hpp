@@ -56,11 +56,9 @@ struct TangentialState {
   double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, as for a bonded circle of radius c
 };
 
-/// The state at a given force or displacement. Relative error of every member a few eps, plus what an ulp of
-/// the argument costs. Each throws std::domain_error, with the value and the range, outside force_ratio in
-/// [0, 1) and displacement in [0, (n + 1)/(4 n)).
+/// The state at a given force. Relative error of every member a few eps, plus what an ulp of the argument
+/// costs. Throws std::domain_error, with the value and the range, outside [0, 1).
 TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter);
-TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter);
 
 /// Traction q/(mu p0) along F at radius r/a; absolute error a few eps of the pressure. Throws
 /// std::domain_error outside [0, 1] and where the pressure is infinite.

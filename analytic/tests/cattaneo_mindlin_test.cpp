@@ -38,18 +38,6 @@ TEST(CattaneoMindlin, KeepsItsDigitsAtBothEnds) {
   }
 }
 
-TEST(CattaneoMindlin, ComesBackFromItsDisplacement) {
-  for (const auto& indenter : kRound)
-    for (const double f : {1e-9, 0.2, 0.7, 0.999}) {
-      const auto state = from_force_ratio(f, indenter);
-      const auto again = from_displacement(state.displacement, indenter);
-      EXPECT_NEAR(again.force_ratio, f, 8 * kEps);
-      EXPECT_NEAR(again.force_deficit, state.force_deficit, 8 * kEps);
-      EXPECT_NEAR(again.displacement, state.displacement, 8 * kEps);
-      EXPECT_NEAR(again.stick_ratio, state.stick_ratio, 16 * kEps);
-    }
-}
-
 TEST(CattaneoMindlin, HasTheForceOfItsTractionsAndCoulombsRing) {
   for (const auto& indenter : kRound)
     for (const double f : {0.1, 0.6, 0.99}) {
@@ -134,9 +122,9 @@ TEST(CattaneoMindlin, LosesTheAreaOfMasingsLoop) {
   for (const auto& indenter : kRound)
     for (const double f : {0.2, 0.95}) {
       const auto state = from_force_ratio(f, indenter);
-      const double work = gsl::integral([&](double d) { return from_displacement(d, indenter).force_ratio; },
-                                        0, state.displacement);
-      EXPECT_NEAR(energy_lost_per_cycle(state, indenter), 8 * work - 4 * f * state.displacement, 1e-14);
+      const double complement =
+          gsl::integral([&](double force) { return from_force_ratio(force, indenter).displacement; }, 0, f);
+      EXPECT_NEAR(energy_lost_per_cycle(state, indenter), 4 * f * state.displacement - 8 * complement, 1e-14);
     }
 }
 
@@ -152,9 +140,6 @@ TEST(CattaneoMindlin, LosesTheCubeOfASmallForce) {
 TEST(CattaneoMindlin, RefusesWhatLiesOutside) {
   for (const double bad : {-0.1, 1.0, kNan})
     EXPECT_THROW(from_force_ratio(bad, kSphere), std::domain_error) << bad;
-  for (const double bad : {-0.1, 0.375, kNan})
-    EXPECT_THROW(from_displacement(bad, kSphere), std::domain_error) << bad;
-  EXPECT_THAT([] { from_displacement(0.4, kSphere); }, ThrowsMessage<std::domain_error>(HasSubstr("0.375")));
   const auto state = from_force_ratio(0.5, kSphere);
   for (const double bad : {-0.1, 1.1, kNan})
     EXPECT_THROW(traction(state, bad, kSphere), std::domain_error) << bad;
