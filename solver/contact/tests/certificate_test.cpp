@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "docs/extend/examples/method.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/tests/dense_algebra.hpp"
@@ -139,8 +140,7 @@ TEST_F(CoulombState, WithoutEnergyButWithAGapPassesNoBound) {
 
 // --- the gap as a bound ---
 
-/// Minimises q.Kq/2 - phi t.q over the friction discs by accelerated projected gradients (Nesterov 1983): on
-/// 6 x 6 cells, slow and sure, and of nothing in common with the method under test.
+/// A minimum of q.Kq/2 - phi t.q over the friction discs of 6 x 6 cells.
 class SmallProblem : public testing::Test {
  protected:
   static constexpr double kTwist = 0.5;
@@ -148,39 +148,18 @@ class SmallProblem : public testing::Test {
   SmallProblem() {
     const ArrayXd r2 = cell_x1(grid_).square() + cell_x2(grid_).square();
     bound_ = (1.0 - r2 / 12.0).max(0.0).sqrt() * 0.9;
-    q_star_ = minimise();
+    TangentialProblem problem;
+    problem.friction_bound = bound_;
+    problem.twist = kTwist;
+    q_star_ = example::solve_by_plain_gradient(op_, problem, 1e-16, 5000).traction;
     moment_ = (q_star_ * t_).sum();
   }
 
   ArrayXd product(const ArrayXd& q) const { return (K_ * q.matrix()).array(); }
   double energy(const ArrayXd& q) const { return 0.5 * (q * product(q)).sum(); }
 
-  ArrayXd project(ArrayXd q) const {
-    const ArrayXd size = norms(q);
-    for (Index i = 0; i < 36; ++i) {
-      if (size[i] > bound_[i]) {
-        q[i] *= bound_[i] / size[i];
-        q[i + 36] *= bound_[i] / size[i];
-      }
-    }
-    return q;
-  }
-
-  ArrayXd minimise() const {
-    const double lipschitz = dense_eigenvalues(K_).maxCoeff();
-    ArrayXd q = ArrayXd::Zero(72);
-    ArrayXd ahead = q;
-    double momentum = 1.0;
-    for (int i = 0; i < 5000; ++i) {
-      const ArrayXd next = project(ahead - (product(ahead) - kTwist * t_) / lipschitz);
-      const bool downhill =
-          ((ahead - next) * (next - q)).sum() <= 0.0;  // else restart (O'Donoghue and Candes 2015)
-      const double next_momentum = downhill ? 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum)) : 1.0;
-      ahead = downhill ? ArrayXd(next + (momentum - 1.0) / next_momentum * (next - q)) : next;
-      momentum = next_momentum;
-      q = next;
-    }
-    return q;
+  ArrayXd project(const ArrayXd& q) const {
+    return q * (bound_ / norms(q).max(1e-300)).min(1.0).replicate(2, 1);
   }
 
   ArrayXd random_feasible(std::mt19937_64& generator) const {

@@ -159,15 +159,6 @@ TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
   }
 }
 
-TEST(CoulombLoads, NoMomentNoTraction) {
-  const CoulombBench bench(20, 20);
-  const TangentialSolution solution = bench.solve(0.0);
-  EXPECT_EQ(solution.status, Status::converged) << solution.message;
-  EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
-  EXPECT_EQ(solution.twist, 0.0);
-  EXPECT_EQ(bench.solve_twist(0.0).traction.abs().maxCoeff(), 0.0);
-}
-
 TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
   const CoulombBench bench(12, 12);
   const TangentialSolution solution = solve_by_coulomb_method(

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "solver/allocations/allocations.hpp"
-#include "solver/elasticity/convolution.hpp"
 #include "solver/elasticity/direct.hpp"
+#include "solver/grid/mirror.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
@@ -21,6 +21,8 @@ constexpr std::array kKinds{OperatorKind::dcfft, OperatorKind::direct, OperatorK
 /// Between the three ways to evaluate one operator, relative to the largest displacement: the sum over a row
 /// of up to 6,144 terms and the transforms round by a few hundred eps at most.
 constexpr double kOfThreeWays = 1e-12;
+/// Between a quadrant and its whole grid: transforms and sums there are shorter.
+constexpr double kOfParts = 1e-13;
 
 /// As around a contact: nothing in the outer rows, and cells without traction between others.
 ArrayXd random_field_with_zero_rows(const Grid& grid, std::size_t fields, unsigned seed) {
@@ -71,9 +73,11 @@ std::vector<OperatorCase> operator_cases() {
     cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
     cases.push_back({"coupling_" + shape, grid, coupling_kernel()});
   }
-  for (const Grid& grid :
-       {Grid{1, 1, 1.0, 1.0, true}, Grid{2, 3, 1.0, 0.5, true}, Grid{17, 17, 0.3, 0.3, true},
-        Grid{33, 17, 1.0, 1.0, true}, Grid{7, 31, 0.3, 1.0, true}}) {
+  std::vector<Grid> quadrants{{1, 1, 1.0, 1.0, true},   {2, 3, 1.0, 0.5, true},   {5, 4, 1.0, 1.0, true},
+                              {16, 16, 1.0, 1.0, true}, {33, 17, 1.0, 1.0, true}, {7, 31, 0.3, 1.0, true},
+                              {37, 5, 1e-3, 2e-3, true}};
+  for (const Index n : {2, 3, 8, 13, 17, 33, 50}) quadrants.push_back({n, n, 0.3, 0.3, true});
+  for (const Grid& grid : quadrants) {
     const std::string shape = "quadrant_" + std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
     cases.push_back({"normal_" + shape, grid, normal_kernel()});
     cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
@@ -106,6 +110,7 @@ std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
 /// diagonal.
 class SquareOperator : public Operator {};
 class WholeOperator : public Operator {};
+class QuadrantOperator : public Operator {};
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator, testing::ValuesIn(cases_without([](const OperatorCase& c) {
                            return c.kernel.inputs != c.kernel.outputs || c.diagonal;
@@ -132,6 +137,29 @@ TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
     for (LinearOperator* const op : {fft.get(), direct.get()}) {
       EXPECT_LE(relative_difference(applied(*op, traction), expected), kOfThreeWays);
     }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantOperator,
+                         testing::ValuesIn(cases_without([](const OperatorCase& c) { return c.whole(); })),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// With a mirror at the diagonal, q1 determines all of it, to the last bit.
+TEST_P(QuadrantOperator, IsTheDirectSumOfTheUnfoldedField) {
+  const auto& [name, grid, kernel, diagonal] = GetParam();
+  const Symmetry symmetry = kernel.inputs == 1 ? normal_symmetry() : torsion_symmetry();
+  const Grid whole = whole_grid(grid);
+  DirectSum direct(whole, kernel, dissimilar_pair(), OperatorOptions{});
+  const auto op = make(OperatorKind::dcfft);
+  for (ArrayXd traction : {random_traction(1), random_field_with_zero_rows(grid, kernel.inputs, 2)}) {
+    if (diagonal) traction = mirrored_about_diagonal(traction, grid.n1);
+    const ArrayXd expected = restrict_to_quadrant(whole, applied(direct, unfold(grid, traction, symmetry)));
+    const ArrayXd u = applied(*op, traction);
+    EXPECT_LE(largest(u - expected), kOfParts * largest(expected));
+    if (!diagonal) continue;
+    EXPECT_TRUE((mirrored_about_diagonal(u, grid.n1) == u).all());
+    traction.tail(grid.cells()) = random_field(grid.cells(), 14);
+    EXPECT_TRUE((applied(*op, traction) == u).all());
   }
 }
 
