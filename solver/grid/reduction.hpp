@@ -13,7 +13,10 @@ class Reduction {
   Reduction() = default;
 
   /// The whole grid.
-  explicit Reduction(const Grid& grid) : whole_(grid), trimmed_(grid), grid_(grid) {}
+  explicit Reduction(const Grid& grid) : Reduction(grid, grid) {}
+
+  /// The cells of another grid of the same cells in the middle of a grid.
+  Reduction(const Grid& grid, const Grid& middle) : whole_(grid), trimmed_(middle), grid_(middle) {}
 
   /// contact: positive in cells that may carry traction. Empty rows and columns around them are trimmed, as
   /// many on one side as on the other, so that the origin stays in the middle.
