@@ -14,9 +14,13 @@ from pathlib import Path
 
 from hold import Hold
 from kills_test import SCENE, without_times
+from program_run import SHORT_SCENE
 
 PROGRAM = Path(sys.argv[1]).resolve()
 SCENES = SCENE.parent
+# Loads that use all of a history's state: more and less normal load, the same twice, turns back, and forces.
+STEPS = "".join(f"[[step]]\n{keys}\n" for keys in (
+    "moment_ratio = 0.5", "moment_ratio = 0.7", "normal = 1300", "moment_ratio = -0.4", "force = [20, 10]", "normal = 900"))
 
 
 class ResumeTest(unittest.TestCase):
@@ -53,14 +57,14 @@ class ResumeTest(unittest.TestCase):
         for path in self.folder.iterdir():
             path.unlink()
 
-    def assert_resumes(self, scene, *options):
-        """Kills between two steps, and at the end of a step."""
+    def assert_resumes(self, scene, *options, kills=2):
+        """Kills between two steps, and at the end of a step; each time one step further."""
         self.run_program(scene, *options)
         whole = self.answer()
         words = (scene, *options, "--checkpoint", self.checkpoint, "--resume")
         for between in (True, False):
             self.clear()
-            for _ in range(2):
+            for _ in range(kills):
                 self.kill(self.words(*words), between)
             said = self.run_program(*words)
             self.assertEqual(self.answer(), whole)
@@ -75,6 +79,14 @@ class ResumeTest(unittest.TestCase):
 
     def test_slip_over_several_steps(self):
         self.assert_resumes("torsion_loop", "--set", "grid.cells=[16,16]")
+
+    def test_all_of_the_state(self):
+        for head, options, kills in (("cycles = 2\n", (), 11), ("", ("full", "lower.poisson_ratio=0.1"), 5),
+                                     ("", ("pressure", "lower.poisson_ratio=0.1"), 5)):
+            (self.aside / "all.toml").write_text(head + SHORT_SCENE.replace("[32, 32]", "[16, 16]") + STEPS)
+            self.clear()
+            sets = (word for key in options for word in ("--set", key if "=" in key else f"contact.coupling={key}"))
+            self.assert_resumes(self.aside / "all", *sets, kills=kills)
 
     def test_other_and_damaged_checkpoints_are_refused(self):
         small = ("growing_load", "--set", "grid.cells=[16,16]")
