@@ -44,7 +44,7 @@ struct SolveOptions {
 /// 1. Makes the scene dimensionless, on its grid (model/make_model.hpp).
 /// 2. For each step of the history, in parts (history/history_step.hpp): pressure, tractions, numbers
 ///    (step/solve_step.hpp).
-/// 3. Puts units on the answer (step/to_si.hpp).
+/// 3. Puts units on the answer (step/solve_step.hpp).
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
 }  // namespace slipstick::solver

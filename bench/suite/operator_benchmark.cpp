@@ -13,7 +13,7 @@
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
-#include "solver/grid/mirror.hpp"
+#include "solver/grid/reduction.hpp"
 
 namespace slipstick::bench {
 namespace {

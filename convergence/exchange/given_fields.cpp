@@ -9,7 +9,7 @@
 #include "solver/model/make_model.hpp"
 #include "solver/step/pressure.hpp"
 #include "solver/step/resolution.hpp"
-#include "solver/step/to_si.hpp"
+#include "solver/step/solve_step.hpp"
 
 namespace slipstick::convergence {
 namespace {

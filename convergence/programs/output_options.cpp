@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "solver/input/input_error.hpp"
-#include "solver/input/misspelling.hpp"
+#include "solver/input/setting_key.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {

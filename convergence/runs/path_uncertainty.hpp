@@ -5,7 +5,7 @@
 
 #include "solver/solve.hpp"
 
-/// The error that the number of parts of its steps (solver/history/load_parts.hpp) leaves in a history:
+/// The error that the number of parts of its steps (solver/history/history_step.hpp) leaves in a history:
 /// 1. the scene is posed on few cells, on which parts leave nearly the same errors as on many;
 /// 2. its history is solved there in the scene's parts and in four times as many;
 /// 3. the difference at the end of each step, times a safety factor, is the uncertainty of that step.

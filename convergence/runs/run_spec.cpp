@@ -16,7 +16,6 @@
 #include "convergence/runs/result_cache.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_file.hpp"
-#include "solver/scene/shape_kind.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {

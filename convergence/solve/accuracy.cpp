@@ -15,7 +15,6 @@
 #include "solver/model/make_model.hpp"
 #include "solver/model/memory_plan.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/step/grid_edge.hpp"
 #include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {

@@ -11,8 +11,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/history/history_state.hpp"
-#include "solver/input/dataset_reader.hpp"
-#include "solver/input/dataset_writer.hpp"
+#include "solver/input/datasets.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {

@@ -52,6 +52,15 @@ struct CountedArea {
   double uncertainty = 0.0;  ///< of `corrected`, with a probability of 99 %
 };
 
+/// Cells that counting adds per cell side along a smooth edge of solved contact or stick.
+inline constexpr double kCountedBySide = 0.09;
+/// The same where every cell that the edge cuts is counted: half a cell per side.
+inline constexpr double kCutBySide = 0.5;
+
+/// inside: grid.cells() values, above zero in the cells of the area. by_side: cells that counting adds per
+/// side of the edge; 0 for a punch's face, which has the cells whose centres lie on it.
+CountedArea counted_area(const Grid& grid, const Eigen::ArrayXd& inside, double by_side = kCountedBySide);
+
 /// x1 and x2 of all cell centres: n1*n2 values each.
 Eigen::ArrayXd cell_x1(const Grid& grid);
 Eigen::ArrayXd cell_x2(const Grid& grid);

@@ -29,48 +29,30 @@ int started() {
   return 1;
 }
 
-/// Rank 0 of `number` ranks, which cannot reach the others.
-class Planned final : public Communicator {
- public:
-  explicit Planned(int number) : number_(number) {}
-  int number() const override { return number_; }
-  int rank() const override { return 0; }
-  Sent sent() const override { return {}; }
-  void gather(void*, std::size_t, Index, Index) override { refuse(); }
-  void gather_adjacent(void*, std::size_t, Index, Index, Index) override { refuse(); }
-  void transpose(void*, const SharedMatrix&, bool) override { refuse(); }
-  bool have_all_ended() override { return true; }
-  [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
-
- private:
-  [[noreturn]] static void refuse() { throw std::logic_error("planned ranks share no work"); }
-  int number_;
-};
-
 }  // namespace
 
-int Ranks::number() const { return several() ? communicator_->number() : 1; }
-int Ranks::rank() const { return several() ? communicator_->rank() : 0; }
+int Ranks::number() const { return communicator_ != nullptr ? communicator_->number() : planned_; }
+int Ranks::rank() const { return communicator_ != nullptr ? communicator_->rank() : 0; }
 
 Communicator& Ranks::communicator() const {
-  if (!several()) throw std::logic_error("a single process has no communicator");
+  if (communicator_ == nullptr) throw std::logic_error("ranks without a communicator");
   return *communicator_;
 }
 
 void Ranks::gather(std::span<double> field, Index rows, Index rows_of_rank) const {
   if (!several() || rows == 0) return;
-  communicator_->gather(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
+  communicator().gather(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
                         rows_of_rank);
 }
 
 void Ranks::gather_adjacent(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const {
   if (!several() || rows == 0) return;
-  communicator_->gather_adjacent(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
+  communicator().gather_adjacent(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
                                  rows_of_rank, depth);
 }
 
 void Ranks::gather_shares(void* things, std::size_t bytes, Index count) const {
-  if (several()) communicator_->gather(things, bytes, count, block_of(count));
+  if (several()) communicator().gather(things, bytes, count, block_of(count));
 }
 
 std::vector<double> Ranks::of_each(double own) const {
@@ -86,9 +68,6 @@ std::string Ranks::of_first(const std::string& own) const {
   gather_shares(std::span(all));
   return all.front().data();
 }
-
-PlannedRanks::PlannedRanks(int number) : communicator_(std::make_unique<Planned>(number)) {}
-PlannedRanks::~PlannedRanks() = default;
 
 JoinedRanks::JoinedRanks() {
   if (started() <= 1) return;

@@ -23,8 +23,8 @@ struct IndexRange {
 };
 
 /// The processes that solve one contact together: one process, or the ranks of MPI that mpirun has started.
-/// Each grid carries this value, which determines the owner of each row. It refers to the JoinedRanks or
-/// PlannedRanks that made it, which must live longer. Its functions are collective: all ranks call them.
+/// Each grid carries this value, which determines the owner of each row. It refers to the JoinedRanks that
+/// made it, which must live longer. Its functions are collective: all ranks call them.
 ///
 /// Every rank has an array for the whole field but fills only its own rows; the pages of other rows are never
 /// touched, so that they take no memory. share_rows() makes a field whole.
@@ -33,8 +33,15 @@ class Ranks {
   /// One process.
   Ranks() = default;
   explicit Ranks(Communicator& communicator) : communicator_(&communicator) {}
+  /// Rank 0 of `number` ranks, for predictions: the others do not exist, so that any exchange throws
+  /// std::logic_error.
+  static Ranks planned(int number) {
+    Ranks ranks;
+    ranks.planned_ = number;
+    return ranks;
+  }
 
-  bool several() const { return communicator_ != nullptr; }
+  bool several() const { return communicator_ != nullptr || planned_ > 1; }
   int number() const;
   /// The number of this process, from 0.
   int rank() const;
@@ -63,7 +70,7 @@ class Ranks {
   /// A text of the first rank, of less than 8 KiB, on all of them.
   std::string of_first(const std::string& own) const;
 
-  /// Throws std::logic_error for one process.
+  /// Throws std::logic_error where there is none.
   Communicator& communicator() const;
 
  private:
@@ -71,6 +78,7 @@ class Ranks {
   void gather_shares(void* things, std::size_t bytes, Index count) const;
 
   Communicator* communicator_ = nullptr;
+  int planned_ = 1;
 };
 
 /// Connects the ranks that mpirun has started, if any, for the lifetime of this object. The program makes it
@@ -87,21 +95,6 @@ class JoinedRanks {
   /// Waits for the other ranks. A rank that failed waits for 10 seconds; if others still run, it prints the
   /// failure and aborts them all with its exit code.
   void end(int exit_code, const std::string& failure = {});
-
- private:
-  std::unique_ptr<Communicator> communicator_;
-};
-
-/// Rank 0 of `number` ranks, for predictions: the others do not exist, so that any exchange throws
-/// std::logic_error.
-class PlannedRanks {
- public:
-  explicit PlannedRanks(int number);
-  ~PlannedRanks();
-  PlannedRanks(const PlannedRanks&) = delete;
-  PlannedRanks& operator=(const PlannedRanks&) = delete;
-
-  Ranks ranks() const { return Ranks(*communicator_); }
 
  private:
   std::unique_ptr<Communicator> communicator_;

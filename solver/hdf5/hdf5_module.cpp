@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "solver/hdf5/hdf5_library.hpp"
+#include "solver/input/datasets.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "solver/solution.hpp"
-#include "solver/step/contact_state.hpp"
+#include "solver/step/tractions.hpp"
 
 namespace slipstick::solver {
 

@@ -29,7 +29,16 @@ struct HistoryStep {
   HistoryState after() const;
 };
 
-/// Solves the step of a scene that follows a state, part by part (load_parts.hpp).
+/// The loads at the ends of the parts of a step, `scene.solver.substeps` of them; the last one is the step
+/// itself. Each part is an implicit step of its own, which opposes traction to its slip as a whole: so the
+/// answer depends on the number of parts wherever slip turns within a step, or the contact grows or shrinks
+/// while it slips, and tends to that of Coulomb's law like one over that number. Tangential loads and imposed
+/// motions are interpolated linearly, from their values at the end of the step before. Where the normal load
+/// changes too, the first half of the parts brings it, and the second half the tangential loads; a single
+/// part brings both at once. The first step begins with its normal load.
+std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before);
+
+/// Solves the step of a scene that follows a state, part by part.
 HistoryStep solve_history_step(const Scene& scene, const Model& model, HistoryState before, Detail detail,
                                const Progress& progress = {});
 

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "solver/grid/own_rows.hpp"
-#include "solver/hdf5/hdf5_library.hpp"
-#include "solver/input/dataset_reader.hpp"
-#include "solver/input/dataset_writer.hpp"
+#include "solver/input/datasets.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/table_text.hpp"
@@ -143,22 +141,24 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
   const Index first = rows.first * grid.n2;
   const auto own = static_cast<double>((keep.segment(first, rows.count() * grid.n2) != 0.0).count());
   const std::vector<double> kept = grid.ranks.of_each(own);
-  const auto own_at = kept.begin() + grid.ranks.rank();
+  const auto sum_to = [&](int rank) {
+    return static_cast<std::size_t>(std::accumulate(kept.begin(), kept.begin() + rank, 0.0));
+  };
+  const std::size_t all = sum_to(grid.ranks.number());
+  const std::size_t before = sum_to(grid.ranks.rank());
   std::vector<LongDataset> datasets;
   datasets.reserve(columns.size());
   for (const FieldColumn& column : columns) {
-    datasets.push_back({column.name, static_cast<Index>(std::accumulate(kept.begin(), kept.end(), 0.0)),
-                        static_cast<Index>(std::accumulate(kept.begin(), own_at, 0.0)), rows.count(),
-                        [&](Index i) {
-                          const Index start = first + i * grid.n2;
+    datasets.push_back({{column.name, false, all}, before, [&](const PutBytes& put) {
                           std::vector<double> row(static_cast<std::size_t>(grid.n2));
-                          column.values(start, start + grid.n2, row.data());
-                          std::size_t count = 0;
-                          for (Index j = 0; j < grid.n2; ++j) {
-                            if (keep[start + j] != 0.0) row[count++] = row[static_cast<std::size_t>(j)];
+                          for (Index start = first; start < rows.last * grid.n2; start += grid.n2) {
+                            column.values(start, start + grid.n2, row.data());
+                            std::size_t count = 0;
+                            for (Index j = 0; j < grid.n2; ++j) {
+                              if (keep[start + j] != 0.0) row[count++] = row[static_cast<std::size_t>(j)];
+                            }
+                            put(row.data(), count * sizeof(double));
                           }
-                          row.resize(count);
-                          return row;
                         }});
   }
   write_datasets(file, datasets, grid.ranks);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -84,12 +83,9 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
 
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
   std::error_code error;
-  const auto whole = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-  if (error) return false;
-  const auto around = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error) / "";
-  // The folder's path ends with an empty part, which matches any rest.
-  return !error && std::mismatch(whole.begin(), whole.end(), around.begin(), around.end()).second ==
-                       std::prev(around.end());
+  const auto way =
+      std::filesystem::relative(std::filesystem::absolute(file), std::filesystem::absolute(folder), error);
+  return !error && !way.empty() && *way.begin() != "..";
 }
 
 namespace {
@@ -138,5 +134,32 @@ std::string shown(std::string_view text) {
   }
   return text.size() > kMaxShown ? printable + "..." : printable;
 }
+
+namespace {
+
+/// Characters of a complaint that a message shows.
+constexpr std::size_t kMaxComplaint = 2000;
+
+/// A character of several bytes stays whole.
+std::string cut(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  // In UTF-8 all bytes of a character but the first are 10xxxxxx.
+  constexpr unsigned char kContinues = 0x80;
+  constexpr unsigned char kContinuesMask = 0xC0;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & kContinuesMask) == kContinues) --most;
+  return text.substr(0, most) + "...";
+}
+
+}  // namespace
+
+InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
+                       const std::string& allowed)
+    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", printable(cut(file, kMaxComplaint)),
+                                        printable(cut(key, kMaxShown)), printable(cut(value, kMaxShown)),
+                                        allowed)) {}
+
+InputError::InputError(const std::string& file, const std::string& complaint)
+    : std::invalid_argument(fmt::format("{}: {}", printable(cut(file, kMaxComplaint)),
+                                        printable(cut(complaint, kMaxComplaint)))) {}
 
 }  // namespace slipstick::solver

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-#include "solver/input/dataset_reader.hpp"
+#include "solver/input/datasets.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 

@@ -4,20 +4,72 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <map>
 #include <sstream>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
-#include "solver/input/long_key.hpp"
-#include "solver/input/misspelling.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 /// Edits that make a key look like a misspelling of another.
 constexpr std::size_t kMisspelling = 3;
+/// Parts of a dotted key, at most. No key that is read has more than five; keys nest 256 deep at most.
+constexpr std::size_t kMaxKeyParts = 32;
 const std::string kLongKey = fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts);
+
+/// Where the string or comment that begins at a place ends: the place behind it; the place itself where none
+/// begins there.
+std::size_t end_of_words(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  if (quote == '#') return std::min(text.find('\n', at), text.size());
+  if (quote != '"' && quote != '\'') return at;
+  const std::string lines(3, quote);
+  const std::string end = text.compare(at, 3, lines) == 0 ? lines : std::string(1, quote);
+  for (std::size_t i = at + end.size(); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text.compare(i, end.size(), end) == 0) {
+      i += end.size();  // behind three quotes two more may stand, which belong to the string
+      return end == lines ? std::min(text.find_first_not_of(quote, i), i + 2) : i;
+    }
+  }
+  return text.size();
+}
+
+/// The line of the first key of a TOML text that is too long; 0: there is none. toml++ destroys tables in
+/// tables recursively: keys of a million parts would overrun the stack. The dots outside of strings are
+/// counted; a key inside a table in braces has the parts of the keys around that table too.
+std::ptrdiff_t line_of_long_key(const std::string& text) {
+  struct Table {
+    std::size_t around = 0;  ///< parts of the keys in front of all open braces
+    std::size_t key = 1;     ///< of its key before the last '='
+  };
+  std::vector<Table> tables(1);
+  std::size_t parts = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::size_t behind = end_of_words(text, i);
+    if (behind > i) {
+      i = behind - 1;
+      continue;
+    }
+    const char c = text[i];
+    if (c == '.') ++parts;
+    if (c == '=') tables.back().key = parts;
+    if (c == '{') tables.push_back({.around = tables.back().around + tables.back().key});
+    if (c == '}' && tables.size() > 1) tables.pop_back();
+    const bool in_key =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
+    if (!in_key) parts = 1;
+    if (tables.back().around + parts > kMaxKeyParts) {
+      return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+    }
+  }
+  return 0;
+}
 
 toml::table parse(const std::string& text, const std::string& file) {
   if (text.find('\0') != std::string::npos) {
@@ -185,7 +237,9 @@ void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives
   }
 }
 
-const Range& SceneReader::range_of(const std::string& key) const { return toml_->range(key); }
+const Range& SceneReader::range_for(const std::string& key, const Range& range) const {
+  return range.contains ? range : toml_->range(key);
+}
 
 std::string SceneReader::where(const std::string& key) const {
   const auto is_set = [&](const std::string& set) { return key == set || key.starts_with(set + "."); };
@@ -244,19 +298,20 @@ std::size_t SceneReader::count(const std::string& key) {
 }
 
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
+  const Range& allowed = range_for(key, range);
   const auto found = toml_->node(key);
   if (!found) return std::nullopt;
   const auto value = number_of(*found.node());
   if (!value) {
-    fail(key, print(*found.node()), for_number(*found.node(), fmt::format("a number, {}", range.words)));
+    fail(key, print(*found.node()), for_number(*found.node(), fmt::format("a number, {}", allowed.words)));
   }
-  if (!range.contains(*value)) fail(key, print(*found.node()), range.words);
+  if (!allowed.contains(*value)) fail(key, print(*found.node()), allowed.words);
   return value;
 }
 
 double SceneReader::number(const std::string& key, const Range& range) {
   const auto value = find_number(key, range);
-  if (!value) fail_missing(key, fmt::format("a number, {}", range.words));
+  if (!value) fail_missing(key, fmt::format("a number, {}", range_for(key, range).words));
   return *value;
 }
 
@@ -265,17 +320,18 @@ double SceneReader::number_or(const std::string& key, double otherwise, const Ra
 }
 
 std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& key, const Range& range) {
+  const Range& each = range_for(key, range);
   const auto found = toml_->node(key);
   if (!found) return std::nullopt;
   const toml::array* const array = found.as_array();
-  const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
+  const std::string allowed = fmt::format("[a, b], two numbers, each {}", each.words);
   if (array == nullptr || array->size() != 2) {
     fail(key, print(*found.node()), for_number(*found.node(), allowed));
   }
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto value = number_of((*array)[i]);
-    if (!value || !range.contains(*value)) fail(key, print(*found.node()), allowed);
+    if (!value || !each.contains(*value)) fail(key, print(*found.node()), allowed);
     pair[i] = *value;
   }
   return pair;
@@ -283,7 +339,7 @@ std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& k
 
 std::array<double, 2> SceneReader::pair(const std::string& key, const Range& range) {
   const auto value = find_pair(key, range);
-  if (!value) fail_missing(key, fmt::format("[a, b], two numbers, each {}", range.words));
+  if (!value) fail_missing(key, fmt::format("[a, b], two numbers, each {}", range_for(key, range).words));
   return *value;
 }
 
@@ -306,17 +362,16 @@ std::vector<std::string> SceneReader::list(const std::string& key) {
 }
 
 std::vector<std::string> SceneReader::texts(const std::string& key) {
-  const auto found = toml_->node(key);
-  if (!found) return {};
-  const toml::array* const array = found.as_array();
+  std::vector<std::string> texts;
   const char* allowed = "a list of strings, [\"a\", \"b\", ...], of at least one";
-  if (array == nullptr || array->empty()) fail(key, print(*found.node()), allowed);
-  std::vector<std::string> elements;
-  for (const toml::node& element : *array) {
+  const auto found = toml_->node(key);
+  if (!found) return texts;
+  if (!found.is_array() || found.as_array()->empty()) fail(key, print(*found.node()), allowed);
+  for (const toml::node& element : *found.as_array()) {
     if (!element.is_string()) fail(key, print(element), allowed);
-    elements.push_back(*element.value<std::string>());
+    texts.push_back(*element.value<std::string>());
   }
-  return elements;
+  return texts;
 }
 
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {

@@ -42,23 +42,14 @@ class SceneReader {
   std::size_t line(const std::string& key) const;
   /// Tables in the array of tables under a key; none where the key is missing.
   std::size_t count(const std::string& key);
-  std::optional<double> find_number(const std::string& key, const Range& range);
-  std::optional<double> find_number(const std::string& key) { return find_number(key, range_of(key)); }
-  double number(const std::string& key, const Range& range);
-  double number(const std::string& key) { return number(key, range_of(key)); }
-  double number_or(const std::string& key, double otherwise, const Range& range);
-  double number_or(const std::string& key, double otherwise) {
-    return number_or(key, otherwise, range_of(key));
-  }
-  std::optional<std::array<double, 2>> find_pair(const std::string& key, const Range& range);
-  std::optional<std::array<double, 2>> find_pair(const std::string& key) {
-    return find_pair(key, range_of(key));
-  }
-  std::array<double, 2> pair(const std::string& key, const Range& range);
-  std::array<double, 2> pair(const std::string& key) { return pair(key, range_of(key)); }
+  // The numbers that are allowed; kAny: those of the table.
+  std::optional<double> find_number(const std::string& key, const Range& range = kAny);
+  double number(const std::string& key, const Range& range = kAny);
+  double number_or(const std::string& key, double otherwise, const Range& range = kAny);
+  std::optional<std::array<double, 2>> find_pair(const std::string& key, const Range& range = kAny);
+  std::array<double, 2> pair(const std::string& key, const Range& range = kAny);
   /// All numbers of a list, at least one; none where the key is missing.
-  std::vector<double> numbers(const std::string& key, const Range& range);
-  std::vector<double> numbers(const std::string& key) { return numbers(key, range_of(key)); }
+  std::vector<double> numbers(const std::string& key, const Range& range = kAny);
   /// The elements of a list, at least one, as TOML writes them; none where the key is missing.
   std::vector<std::string> list(const std::string& key);
   /// The strings of a list, at least one; none where the key is missing.
@@ -95,7 +86,8 @@ class SceneReader {
   [[noreturn]] void fail_unknown(const std::string& key) const;
   [[noreturn]] void fail_choice(const std::string& key, const std::string& word,
                                 const std::vector<std::string>& allowed) const;
-  const Range& range_of(const std::string& key) const;
+  /// The range, or the table's where it is kAny.
+  const Range& range_for(const std::string& key, const Range& range) const;
   void apply_override(const std::string& assignment);
   std::string where(const std::string& key) const;
 

@@ -99,6 +99,14 @@ class Draft {
   int descriptor_ = -1;
 };
 
+/// Permissions of an old file can be kept, its owner cannot.
+void replace(const fs::path& file, const WriteNamed& write, const struct stat* old) {
+  Draft draft(file);
+  if (old != nullptr) fchmod(draft.descriptor(), old->st_mode & 07777);
+  fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), write, true);
+  draft.replace(file);
+}
+
 WriteNamed put(std::string_view content) {
   return [=](std::FILE* stream, const fs::path&) { std::fwrite(content.data(), 1, content.size(), stream); };
 }
@@ -147,15 +155,11 @@ std::string why_not_written(int error) {
 void write_whole_named_file(const fs::path& file, const WriteNamed& write) {
   try {
     const fs::path target = behind_links(file);
-    struct stat before {};
-    const bool exists = stat(target.c_str(), &before) == 0;
-    if (exists && !S_ISREG(before.st_mode))
+    struct stat old {};
+    const bool exists = stat(target.c_str(), &old) == 0;
+    if (exists && !S_ISREG(old.st_mode))
       return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), target, write, false);
-    Draft draft(target);
-    // Permissions can be kept, the owner of the old file cannot.
-    if (exists) fchmod(draft.descriptor(), before.st_mode & 07777);
-    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), write, true);
-    draft.replace(target);
+    replace(target, write, exists ? &old : nullptr);
   } catch (const std::system_error& error) {
     refuse(file, error.code().value());
   }
@@ -167,9 +171,7 @@ void write_whole_file(const fs::path& file, std::string_view content) {
 
 void replace_whole_file(const fs::path& file, std::string_view content) {
   try {
-    Draft draft(file);
-    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), put(content), true);
-    draft.replace(file);
+    replace(file, put(content), nullptr);
   } catch (const std::system_error& error) {
     refuse(file, error.code().value());
   }

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "solver/grid/mirror.hpp"
+#include "solver/grid/reduction.hpp"
 
 namespace slipstick::solver {
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/grid/grid_transfer.hpp"
 #include "solver/input/field_file.hpp"
@@ -13,33 +14,17 @@ namespace slipstick::solver {
 
 using Eigen::ArrayXd;
 
-std::string law_text(FrictionKind kind) {
-  switch (kind) {
-    case FrictionKind::coulomb:
-      return "Coulomb's law";
-    case FrictionKind::tresca:
-      return "Tresca's law";
-    case FrictionKind::capped:
-      return "the capped law of friction";
-    case FrictionKind::power:
-      return "the power law of friction";
-  }
-  return "";
-}
+namespace {
 
-std::string bound_text(FrictionKind kind) {
-  switch (kind) {
-    case FrictionKind::coulomb:
-      return "mu p";
-    case FrictionKind::tresca:
-      return "the shear strength";
-    case FrictionKind::capped:
-      return "mu p or the shear strength";
-    case FrictionKind::power:
-      return "k p^n";
-  }
-  return "";
-}
+/// By FrictionKind.
+constexpr std::array kLaws{"Coulomb's law", "Tresca's law", "the capped law of friction",
+                           "the power law of friction"};
+constexpr std::array kBounds{"mu p", "the shear strength", "mu p or the shear strength", "k p^n"};
+
+}  // namespace
+
+std::string law_text(FrictionKind kind) { return kLaws[static_cast<std::size_t>(kind)]; }
+std::string bound_text(FrictionKind kind) { return kBounds[static_cast<std::size_t>(kind)]; }
 
 double FrictionLaw::bound(double pressure) const {
   if (!(pressure > 0.0)) return 0.0;

@@ -10,11 +10,9 @@
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/input/toml_reader.hpp"
 #include "solver/scene/last_digits.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {

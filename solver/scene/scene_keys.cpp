@@ -6,7 +6,6 @@
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/roughness.hpp"
-#include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -9,7 +9,6 @@
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "solver/contact/stick_front.hpp"
-#include "solver/grid/counted_area.hpp"
 #include "solver/grid/motion_field.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/step/resolution.hpp"

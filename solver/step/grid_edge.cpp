@@ -1,5 +1,3 @@
-#include "solver/step/grid_edge.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "solver/contact/full_coupling.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/step/pressure.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <numbers>
 
-#include "solver/grid/counted_area.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {

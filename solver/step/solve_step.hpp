@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "solver/step/contact_state.hpp"
 #include "solver/step/describe_step.hpp"
 
 /// One load step, Scene -> Model -> StepResult:
@@ -35,5 +34,12 @@ StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& s
 
 /// The contact at the end of a step that started from `before`.
 ContactState contact_after(const ContactState& before, const StepResult& step);
+
+/// The numbers of a step in SI units.
+StepNumbers to_si(StepNumbers numbers, const Model& model);
+
+/// The answer to a step in SI units: its fields and numbers, each times its unit. Throws std::domain_error
+/// where that leaves double precision.
+Solution to_si(StepResult result, const Model& model);
 
 }  // namespace slipstick::solver

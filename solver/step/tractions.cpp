@@ -7,8 +7,8 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/paper_method.hpp"
-#include "solver/grid/mirror.hpp"
 #include "solver/grid/own_rows.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/memory_plan.hpp"
 #include "solver/model/symmetry.hpp"

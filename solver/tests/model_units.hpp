@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "solver/history/history_step.hpp"
 #include "solver/model/make_model.hpp"
+#include "solver/solve.hpp"
 
 namespace slipstick::solver {
 
@@ -33,6 +35,13 @@ inline ModelSolution solve_in_model_units(const Scene& scene,
     if (!step.converged() || step.state.finished + 1 == steps) return solution;
     state = step.after();
   }
+}
+
+/// The solutions at the ends of a scene's steps.
+inline std::vector<Solution> steps_of(const Scene& scene) {
+  std::vector<Solution> steps;
+  solve(scene, {.observer = {.step = [&](const Solution& step) { steps.push_back(step); }}});
+  return steps;
 }
 
 }  // namespace slipstick::solver

@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include "solver/step/pressure.hpp"
 #include "solver/tests/model_units.hpp"
 
 namespace slipstick::solver {
@@ -70,6 +71,22 @@ inline double effective_modulus(const Scene& scene) {
     return (1.0 - body.poisson_ratio * body.poisson_ratio) / body.young_modulus;
   };
   return 1.0 / (compliance(scene.upper) + compliance(scene.lower));
+}
+
+/// The normal contact of a scene.
+struct Contact {
+  Model model;
+  NormalSolution solution;
+};
+
+inline Contact press(const Scene& scene) {
+  Contact contact{make_model(scene), {}};
+  contact.solution = find_pressure(scene, contact.model, scene.steps[0]);
+  return contact;
+}
+
+inline double load(const Contact& contact) {
+  return contact.solution.pressure.sum() * contact.model.grid.cell_area() * contact.model.force_unit();
 }
 
 }  // namespace slipstick::solver

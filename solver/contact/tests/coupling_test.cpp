@@ -5,7 +5,7 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
-#include "solver/grid/mirror.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"

@@ -11,7 +11,6 @@
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
-#include "solver/tests/press.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "solver/grid/mirror.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "solver/tests/fields.hpp"
@@ -17,11 +18,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A bowl within a radius, zero beyond: what pressures look like.
 ArrayXd patch(const Grid& grid, double radius) {
   return (1.0 - (cell_x1(grid).square() + cell_x2(grid).square()) / (radius * radius)).max(0.0);
-}
-
-/// Mirrors about both axes, not about the diagonal.
-ArrayXd elliptic_patch(const Grid& grid, double radius_1, double radius_2) {
-  return (1.0 - (cell_x1(grid) / radius_1).square() - (cell_x2(grid) / radius_2).square()).max(0.0);
 }
 
 Index cell(const Grid& grid, Index i, Index j) { return i * grid.n2 + j; }
@@ -66,41 +62,12 @@ TEST(HalfTurn, NeedsNoMirrors) {
 
 // --- what is found ---
 
-TEST(Reduction, OfACircleIsHalfAQuadrant) {
-  const Reduction part = of(kSquare, patch(kSquare, 2.6));  // cells out to 5 from the axes
-  EXPECT_TRUE(part.trimmed());
-  EXPECT_TRUE(part.quadrant());
-  EXPECT_TRUE(part.diagonal());
-  expect_grid(part.grid(), {5, 5, 0.5, 0.5, true});
-}
-
-TEST(Reduction, OfAnEllipseIsAQuadrant) {
-  const Reduction part = of(kSquare, elliptic_patch(kSquare, 3.6, 1.6));
-  EXPECT_FALSE(part.diagonal());
-  expect_grid(part.grid(), {7, 3, 0.5, 0.5, true});
-  // Square, and as wide as long, but with other values.
-  const ArrayXd field = patch(kSquare, 2.6) * (1.0 + 0.01 * cell_x1(kSquare).square());
-  EXPECT_TRUE(of(kSquare, field).quadrant());
-  EXPECT_FALSE(of(kSquare, field).diagonal());
-}
-
 TEST(Reduction, NeedsSquareCellsForTheDiagonal) {
   // As many cells along both sides, symmetric as an array: not in space.
   const Grid stretched{16, 16, 0.5, 0.5000001};
   const Reduction part(stretched, patch(kSquare, 2.6), patch(kSquare, 2.6));
   EXPECT_TRUE(part.quadrant());
   EXPECT_FALSE(part.diagonal());
-}
-
-TEST(Reduction, NeedsEvenCounts) {
-  for (const Grid& grid : {Grid{15, 16, 0.5, 0.5}, Grid{16, 15, 0.5, 0.5}, Grid{15, 15, 0.5, 0.5}}) {
-    const Reduction part = of(grid, patch(grid, 2.6));
-    EXPECT_TRUE(part.trimmed());
-    EXPECT_FALSE(part.quadrant());
-    EXPECT_FALSE(part.diagonal());
-    EXPECT_EQ(part.grid().n1 % 2, grid.n1 % 2) << "the origin stays in the middle";
-    EXPECT_EQ(part.grid().n2 % 2, grid.n2 % 2);
-  }
 }
 
 /// One cell is off by a relative error: rounding passes, a difference in the data does not.
@@ -210,47 +177,55 @@ TEST(ThereAndBack, ExpandedFieldsComeBackUnchanged) {
   }
 }
 
-/// Fields with the symmetry of the reduction survive it and its inverse.
-TEST(ThereAndBack, SymmetricFieldsInTheContactAreKept) {
-  for (const Grid& grid : {kSquare, kOblong, Grid{15, 12, 0.5, 0.5}}) {
-    const ArrayXd pressure = patch(grid, 2.6);
-    const ArrayXd traction = pressure.replicate(2, 1) * rotation_field(grid);
-    for (const Reduction& part : reductions_of(grid)) {
-      EXPECT_TRUE((part.expanded(part.restricted(pressure), normal_symmetry()) == pressure).all());
-      EXPECT_TRUE((part.expanded(part.restricted(traction), torsion_symmetry()) == traction).all());
-    }
-  }
-}
-
-TEST(ThereAndBack, ExpandedFieldsHaveTheirParityAndAreZeroOutside) {
-  const Reduction part = of(kOblong, elliptic_patch(kOblong, 2.6, 2.0));
-  ASSERT_TRUE(part.quadrant());
-  const Index n = kOblong.cells();
-  const ArrayXd q = part.expanded(random_field(2 * part.grid().cells(), 3), torsion_symmetry());
-  ASSERT_EQ(q.size(), 2 * n);
-  const Index margin_1 = kOblong.n1 / 2 - part.grid().n1;
-  const Index margin_2 = kOblong.n2 / 2 - part.grid().n2;
-  ASSERT_GT(margin_1, 0);
-  ASSERT_GT(margin_2, 0);
-  for (Index i = 0; i < kOblong.n1; ++i) {
-    for (Index j = 0; j < kOblong.n2; ++j) {
-      const Index here = cell(kOblong, i, j);
-      const Index across_1 = cell(kOblong, kOblong.n1 - 1 - i, j);
-      const Index across_2 = cell(kOblong, i, kOblong.n2 - 1 - j);
-      EXPECT_EQ(q[here], q[across_1]);  // q1 is even in x1 and odd in x2, q2 odd in x1 and even in x2
-      EXPECT_EQ(q[here], -q[across_2]);
-      EXPECT_EQ(q[here + n], -q[across_1 + n]);
-      EXPECT_EQ(q[here + n], q[across_2 + n]);
-      const bool outside =
-          i < margin_1 || i >= kOblong.n1 - margin_1 || j < margin_2 || j >= kOblong.n2 - margin_2;
-      EXPECT_EQ(q[here] == 0.0, outside);
-      EXPECT_EQ(q[here + n] == 0.0, outside);
-    }
-  }
-}
-
 TEST(ThereAndBack, NoFieldStaysNone) {
   EXPECT_EQ(of(kSquare, patch(kSquare, 2.6)).restricted(ArrayXd()).size(), 0);
+}
+
+// --- mirror images ---
+
+constexpr Grid kQuadrant{3, 2, 0.5, 0.7, true};
+
+TEST(Mirror, WholeGridHoldsTheQuadrantsCells) {
+  const Grid whole = whole_grid(kQuadrant);
+  EXPECT_EQ(whole.n1, 6);
+  EXPECT_EQ(whole.n2, 4);
+  EXPECT_FALSE(whole.quadrant);
+  for (Index i = 0; i < kQuadrant.n1; ++i) EXPECT_EQ(whole.x1(kQuadrant.n1 + i), kQuadrant.x1(i));
+  for (Index j = 0; j < kQuadrant.n2; ++j) EXPECT_EQ(whole.x2(kQuadrant.n2 + j), kQuadrant.x2(j));
+}
+
+TEST(Mirror, QuadrantOfTheWholeGridIsTheSame) {
+  const Grid again = quadrant_of(whole_grid(kQuadrant));
+  EXPECT_EQ(again.n1, kQuadrant.n1);
+  EXPECT_EQ(again.n2, kQuadrant.n2);
+  EXPECT_EQ(again.h1, kQuadrant.h1);
+  EXPECT_EQ(again.h2, kQuadrant.h2);
+  EXPECT_TRUE(again.quadrant);
+}
+
+TEST(Mirror, UnfoldsFieldsByTheirSymmetry) {
+  const Grid whole = whole_grid(kQuadrant);
+  const auto expect = [&](const auto& field, const Symmetry& symmetry) {
+    EXPECT_TRUE((unfold(kQuadrant, field(kQuadrant), symmetry) == field(whole)).all());
+    EXPECT_TRUE((restrict_to_quadrant(whole, field(whole)) == field(kQuadrant)).all());
+  };
+  expect(rotation_field, torsion_symmetry());
+  expect([](const Grid& grid) -> ArrayXd { return cell_x1(grid).square() + 3.0 * cell_x2(grid).square(); },
+         normal_symmetry());
+  expect([](const Grid& grid) -> ArrayXd { return cell_x1(grid) * cell_x2(grid); }, {{-1, -1}});
+}
+
+TEST(Mirror, RefusesOtherGridsAndSizes) {
+  const Grid whole = whole_grid(kQuadrant);
+  EXPECT_THROW(whole_grid(whole), std::invalid_argument);
+  EXPECT_THROW(quadrant_of(kQuadrant), std::invalid_argument);
+  EXPECT_THROW(quadrant_of({3, 4, 1.0, 1.0}), std::invalid_argument);
+  EXPECT_THROW(quadrant_of({4, 3, 1.0, 1.0}), std::invalid_argument);
+  EXPECT_THROW(unfold(kQuadrant, ArrayXd::Ones(7), normal_symmetry()), std::invalid_argument);
+  EXPECT_THROW(unfold(kQuadrant, ArrayXd::Ones(6), torsion_symmetry()), std::invalid_argument);
+  EXPECT_THROW(unfold(whole, ArrayXd::Ones(24), normal_symmetry()), std::invalid_argument);
+  EXPECT_THROW(restrict_to_quadrant(whole, ArrayXd::Ones(25)), std::invalid_argument);
+  EXPECT_THROW(restrict_to_quadrant(kQuadrant, ArrayXd::Ones(6)), std::invalid_argument);
 }
 
 TEST(Symmetrised, IsEvenAboutTheDiagonalAndKeepsTheLoad) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gmock/gmock.h>
+
 #include <string>
 
 #include "solver/input/input_error.hpp"
@@ -15,6 +17,12 @@ std::string complaint(const Call& call) {
     return error.what();
   }
   return "";
+}
+
+/// Whether a message has all these parts.
+template <typename... Parts>
+auto says(const Parts&... parts) {
+  return testing::AllOf(testing::HasSubstr(parts)...);
 }
 
 }  // namespace slipstick::solver

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 /// Files of tests.
@@ -14,6 +15,18 @@ namespace slipstick {
 inline std::string file_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A table as CSV, a line for each i: value(i, j).
+template <typename Index, typename Value>
+std::string table_of(Index rows, Index columns, const Value& value) {
+  std::ostringstream text;
+  text.precision(17);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < columns; ++j) text << (j > 0 ? "," : "") << value(i, j);
+    text << '\n';
+  }
+  return text.str();
 }
 
 /// A folder of its own for each test, which is removed after it.

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 #include <type_traits>
 
+#include "solver/model/memory.hpp"
+#include "solver/model/memory_plan.hpp"
 #include "solver/step/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -13,6 +16,7 @@
 namespace slipstick::solver {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// Numbers enter a model rounded to 40 bits (to_dimensionless).
@@ -47,21 +51,15 @@ TEST_F(PressureFile, IsReadToItsCells) {
 }
 
 TEST_F(PressureFile, MustFitTheGridAndTheLoad) {
-  EXPECT_THAT(complaint([&] { pressure(); }),
-              testing::AllOf(HasSubstr("p.csv"), HasSubstr("cannot be read")));
+  EXPECT_THAT(complaint([&] { pressure(); }), says("p.csv", "cannot be read"));
   const std::string good = "0.000125,0.000125,1e9\n";
   EXPECT_EQ(complaint_about(good), "");
   EXPECT_EQ(complaint_about(good, {"load.normal=62.5"}), "");  // 1e9 Pa on (0.25 mm)^2
-  EXPECT_THAT(complaint_about(good, {"load.normal=1000"}),
-              testing::AllOf(HasSubstr("load.normal = 1000 N"), HasSubstr("62.5"), HasSubstr("p.csv")));
-  EXPECT_THAT(complaint_about(good + "0.000125,-0.000125,nan\n"),
-              testing::AllOf(HasSubstr("p.csv:3"), HasSubstr("nan")));
-  EXPECT_THAT(
-      complaint_about(good + "0.000125,-0.000125,-1\n"),
-      testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 2"), HasSubstr("-1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(complaint_about(good, {"load.normal=1000"}), says("load.normal = 1000 N", "62.5", "p.csv"));
+  EXPECT_THAT(complaint_about(good + "0.000125,-0.000125,-1\n"),
+              says("p.csv", "row 2", "-1", "zero or positive"));
   EXPECT_THAT(complaint_about("0.0002,0.000125,1e9\n"),
-              testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 1"), HasSubstr("0.0002"),
-                             HasSubstr("not a cell's centre")));
+              says("p.csv", "row 1", "0.0002", "not a cell's centre"));
   EXPECT_THAT(complaint_about("0.000625,0.000125,1e9\n"), HasSubstr("not a cell's centre"));  // off the grid
   EXPECT_THAT(complaint_about("0.000125,0.000125,0\n"), HasSubstr("zero everywhere"));
   EXPECT_THAT(complaint_about("0.125,0.125,1e9\n"), HasSubstr("not a cell's centre"));  // mm for m
@@ -69,7 +67,7 @@ TEST_F(PressureFile, MustFitTheGridAndTheLoad) {
 
 TEST_F(PressureFile, HoldsACellOnce) {
   const std::string row = "0.000125,0.000125,1e9\n";
-  EXPECT_THAT(complaint_about(row + row), testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 2")));
+  EXPECT_THAT(complaint_about(row + row), says("p.csv", "row 2"));
 }
 
 // --- height maps ---
@@ -97,26 +95,18 @@ TEST_F(HeightMapFile, BringsItsGridAndItsGap) {
   EXPECT_NEAR(model.gap[1], 0.1, 1e-12);
 }
 
-TEST_F(HeightMapFile, MustBeARectangleOfNumbers) {
-  EXPECT_THAT(complaint([&] { model("1,2\n3\n"); }),
-              testing::AllOf(HasSubstr("heights.csv:2"), HasSubstr("1 values; allowed: 2")));
-  EXPECT_THAT(complaint([&] { model("1,2\n3,high\n"); }),
-              testing::AllOf(HasSubstr("heights.csv:2"), HasSubstr("high"), HasSubstr("a finite number")));
-  EXPECT_THAT(complaint([&] { model("1,2\n3,inf\n"); }), HasSubstr("a finite number"));
-  EXPECT_THAT(complaint([&] { model(""); }), HasSubstr("holds no rows"));
-  EXPECT_THAT(
-      complaint([&] { model("1,2\n3,4\n", {"grid.cells=[3, 2]"}); }),
-      testing::AllOf(HasSubstr("grid.cells = [3, 2]"), HasSubstr("[2, 2]"), HasSubstr("heights.csv")));
+TEST_F(HeightMapFile, SaysTheGrid) {
+  EXPECT_THAT(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[3, 2]"}); }),
+              says("grid.cells = [3, 2]", "[2, 2]", "heights.csv"));
   EXPECT_THAT(complaint([&] { model("1,2\n3,4\n", {"grid.extent=[1, 1]"}); }),
-              testing::AllOf(HasSubstr("grid.extent"), HasSubstr("upper.spacing")));
+              says("grid.extent", "upper.spacing"));
   EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "");
 }
 
 TEST_F(HeightMapFile, IsRefusedWithThePlaceOfAMissingPoint) {
   for (const char* hole : {"", " ", "nan", "NaN"}) {
     EXPECT_THAT(complaint([&] { model(std::string("1,2,3\n4,") + hole + ",6\n"); }),
-                testing::AllOf(HasSubstr("heights.csv"), HasSubstr("row 2, column 2"), HasSubstr("no height"),
-                               HasSubstr("a finite number at every point")))
+                says("heights.csv", "row 2, column 2", "no height", "a finite number at every point"))
         << hole;
   }
   // 4 x 3 points, 10 and 20 um apart, about the origin.
@@ -143,12 +133,21 @@ TEST_F(HeightMapFile, HasThePointsOfTheOthers) {
   };
   EXPECT_EQ(complaint_of("heights.csv", "[1e-5, 2e-5]"), "");
   EXPECT_THAT(complaint_of("wide.csv", "[1e-5, 2e-5]"),
-              testing::AllOf(HasSubstr("wide.csv"), HasSubstr("2 x 2 heights"), HasSubstr("allowed: 2 x 3"),
-                             HasSubstr("heights.csv")));
+              says("wide.csv", "2 x 2 heights", "allowed: 2 x 3", "heights.csv"));
   EXPECT_THAT(complaint_of("heights.csv", "[1e-5, 1e-5]"), HasSubstr("allowed: 2 x 3, 1e-05 x 2e-05 apart"));
 }
 
 // --- the model of a scene ---
+
+/// A model's numbers equal the scene's to 12 digits only.
+TEST(OverUnit, KeepsTwelveDigits) {
+  for (const double value : {1.0, 0.1, 1.0 / 3.0, 6.02e23, -1.6e-19}) {
+    EXPECT_LE(std::abs(to_dimensionless(value, 1.0) / value - 1.0), 0x1p-40);
+    EXPECT_EQ(to_dimensionless(std::nextafter(value, 2.0 * value), 1.0), to_dimensionless(value, 1.0));
+  }
+  EXPECT_EQ(to_dimensionless(0.0, 3.0), 0.0);
+  EXPECT_EQ(to_dimensionless(0x1.8p10, 0x1p3), 0x1.8p7);
+}
 
 TEST(Model, IsDimensionless) {
   const Model model = make_model(paper_scene(40, 0.5));
@@ -182,6 +181,69 @@ TEST(Model, HasThreadsThatAreWorthTheirCells) {
   EXPECT_EQ(threads(512, ModelChoice::automatic, 0), std::min(2, processors));
   EXPECT_EQ(threads(64, ModelChoice::automatic, 3), 3);
   EXPECT_EQ(threads(512, ModelChoice::full, 1), 1);
+}
+
+namespace fs = std::filesystem;
+
+/// Linux's files about memory, below a folder that replaces the root.
+class AvailableMemory : public SceneFile {
+ protected:
+  void say(const std::string& file, const std::string& text) const {
+    fs::create_directories((folder_ / file).parent_path());
+    write(file, text);
+  }
+};
+
+TEST_F(AvailableMemory, IsUnboundedWhereNothingIsSaid) { EXPECT_EQ(available_memory(folder_), INFINITY); }
+
+TEST_F(AvailableMemory, IsWhatTheMachineHasLeft) {
+  say("proc/meminfo", "MemTotal:  16 kB\nMemFree:  2 kB\nMemAvailable:  8 kB\n");
+  EXPECT_EQ(available_memory(folder_), 8.0 * 1024.0);
+}
+
+// Cached files count as used and give way. A group without a limit says "max", or a number beyond any memory.
+TEST_F(AvailableMemory, IsWhatTheControlGroupsLeaveWhereThatIsLess) {
+  say("proc/meminfo", "MemAvailable:  8 kB\n");
+  say("proc/self/cgroup", "0::/outer/inner\n");
+  say("sys/fs/cgroup/outer/inner/memory.max", "max\n");
+  EXPECT_EQ(available_memory(folder_), 8192.0);
+  say("sys/fs/cgroup/outer/memory.max", "6000\n");
+  say("sys/fs/cgroup/outer/memory.current", "5000\n");
+  EXPECT_EQ(available_memory(folder_), 1000.0);
+  say("sys/fs/cgroup/outer/memory.stat", "anon 1\nfile 900\ninactive_file 700\n");
+  EXPECT_EQ(available_memory(folder_), 1700.0);
+  say("sys/fs/cgroup/outer/memory.current", "9000\n");
+  EXPECT_EQ(available_memory(folder_), 0.0);
+}
+
+TEST_F(AvailableMemory, IsWhatControlGroupsOfTheFirstVersionLeave) {
+  say("proc/meminfo", "MemAvailable:  8 kB\n");
+  say("proc/self/cgroup", "3:cpu,cpuacct:/\n4:memory:/unseen\n0::/\n");
+  say("sys/fs/cgroup/memory/memory.limit_in_bytes", "4096\n");
+  say("sys/fs/cgroup/memory/memory.usage_in_bytes", "96\n");
+  EXPECT_EQ(available_memory(folder_), 4000.0);
+}
+
+TEST_F(SceneFile, MayTakeAllOfItsMemoryLimitAndNoMore) {
+  Scene scene = read(kShortScene);
+  const double needed =
+      predicted_memory(scene, make_model(scene), {.pressure = 0.0, .tractions = 0.0}).total();
+  scene.solver.memory_limit = 1.001 * needed;
+  EXPECT_EQ(make_model(scene).grid.n1, 32);
+  scene.solver.memory_limit = 0.999 * needed;
+  EXPECT_THAT(
+      complaint([&] { make_model(scene); }),
+      says("scene.toml", "grid.cells = [32, 32]", bytes_text(needed), "--memory-limit", "fewer cells"));
+}
+
+TEST_F(SceneFile, NamesNoTableThatDoesNotFitInMemory) {
+  std::string text = kShortScene;
+  text.replace(text.find("shape"), text.find("young") - text.find("shape"),
+               "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 1e-5]\n");
+  Scene scene = read(text.substr(0, text.find("[grid]")));
+  fs::resize_file(write("heights.csv", ""), 512U << 20);  // takes no room on the disk
+  scene.solver.memory_limit = 100e6;
+  EXPECT_THAT(complaint([&] { make_model(scene); }), says("heights.csv", "512 MiB", "95.4 MiB"));
 }
 
 }  // namespace

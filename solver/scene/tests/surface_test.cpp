@@ -15,7 +15,6 @@
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/paper_scene.hpp"
-#include "solver/tests/press.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -55,19 +54,6 @@ Scene scene_of(const std::vector<Surface>& surfaces, Index cells, Combine combin
 double gap_at(const Surface& surface, double x1, double x2) {
   return gap_field({moved(surface, surface.at[0] - x1, surface.at[1] - x2)}, Combine::sum,
                    {1, 1, 1.0, 1.0})[0];
-}
-
-/// Mean contact radius of a pressure like Hertz's, wherever it stands and however it lies: the second moments
-/// of its ellipse about its centre are a^2/5 and b^2/5, and their product is that of any axes' determinant.
-double hertzian_radius(const Model& model, const ArrayXd& pressure) {
-  const ArrayXd p = pressure / pressure.sum();
-  ArrayXd x1 = cell_x1(model.grid);
-  ArrayXd x2 = cell_x2(model.grid);
-  x1 -= (p * x1).sum();
-  x2 -= (p * x2).sum();
-  const double determinant =
-      (p * x1.square()).sum() * (p * x2.square()).sum() - std::pow((p * x1 * x2).sum(), 2.0);
-  return std::sqrt(5.0) * std::pow(determinant, 0.25) * model.length_unit;
 }
 
 double approach(const Contact& contact) { return contact.solution.approach * contact.model.length_unit; }
@@ -241,93 +227,6 @@ TEST(Hertz, HoldsForOneParaboloidThatStandsStraight) {
 }
 
 // --- contacts that are known from others ---
-
-/// Between the axes there is no mirror, and the contact is that at 0 degrees on another mesh: approach and
-/// contact area agree to the second order in h, 1/20 of the short semi-axis.
-TEST(TurnedEllipsoid, HasTheContactItHasStraight) {
-  const Contact straight = press(scene_of({ellipsoid(0.018, 0.0063, 0.0)}, 64));
-  const Contact turned = press(scene_of({ellipsoid(0.018, 0.0063, pi / 6.0)}, 64));
-  EXPECT_FALSE(turned.model.pressure_part.quadrant());
-  constexpr double tolerance = 1.0 / (20.0 * 20.0);
-  EXPECT_NEAR(approach(turned) / approach(straight), 1.0, tolerance);
-  EXPECT_NEAR(hertzian_radius(turned.model, turned.solution.pressure) /
-                  hertzian_radius(straight.model, straight.solution.pressure),
-              1.0, tolerance);
-  // Moments of the pressure about its axes, x1 x2 most of all: of an ellipse W/5 (a^2 - b^2) sin cos.
-  const ArrayXd p = turned.solution.pressure / turned.solution.pressure.sum();
-  const ArrayXd x1 = cell_x1(turned.model.grid) * turned.model.length_unit;
-  const ArrayXd x2 = cell_x2(turned.model.grid) * turned.model.length_unit;
-  const HertzContact hertz =
-      hertz_contact(paper::kLoad, 0.018, 0.0063, effective_modulus(paper_scene(1, 0.5)));
-  const double product = 0.2 * (std::pow(hertz.semi_axis_1, 2) - std::pow(hertz.semi_axis_2, 2)) *
-                         std::sin(pi / 6.0) * std::cos(pi / 6.0);
-  EXPECT_NEAR((p * x1 * x2).sum() / product, 1.0, 4.0 * tolerance);
-}
-
-/// Curvatures add up: two spheres on each other are one of half the radius.
-TEST(SumOfSpheres, IsASphereOfHalfTheRadius) {
-  Scene scene = scene_of({sphere(0.018), sphere(0.018)}, 32);
-  scene.grid.extent = {1e-3, 1e-3};
-  const Contact sum = press(scene);
-  scene.surfaces = {sphere(0.009)};
-  const Contact half = press(scene);
-  EXPECT_LE((sum.solution.pressure - half.solution.pressure).abs().maxCoeff(),
-            kSolved * half.solution.pressure.maxCoeff());
-  EXPECT_FALSE(sum.model.hertz);
-}
-
-/// Two equal spheres, each with half the load and its contact radius a. The other one's pressure sinks the
-/// surface by W/(2 pi E* D) here (a point force; its next terms are (a/D)^2 of it), which adds to the
-/// approach. It also tilts it, by W/(2 pi E* D^2), so that the contact moves away by R times that, and bends
-/// it, by (8/(3 pi)) (a/D)^3 of the sphere's curvature.
-TEST(SpheresSideBySide, ShareTheLoad) {
-  const double modulus = effective_modulus(paper_scene(1, 0.5));
-  const double a = std::cbrt(0.75 * 0.5 * paper::kLoad * paper::kRadius / modulus);
-  const double distance = 8.0 * a;
-  const double shift = paper::kRadius * 0.5 * paper::kLoad / (pi * modulus * distance * distance);
-  const std::vector<Surface> spheres{moved(sphere(paper::kRadius), -0.5 * distance, 0.0),
-                                     moved(sphere(paper::kRadius), 0.5 * distance, 0.0)};
-  Scene scene = scene_of(spheres, 0, Combine::nearest);
-  scene.grid.cells = {128, 30};  // 12 cells in a radius
-  scene.grid.extent = {128.0 * a / 12.0,
-                       30.0 * a / 12.0};  // too narrow only for one that carried the whole load
-  const Contact contact = press(scene);
-  const Model& model = contact.model;
-  EXPECT_TRUE(model.pressure_part.quadrant());
-  constexpr double mesh = 1.0 / (12.0 * 12.0);
-  const ArrayXd right = (cell_x1(model.grid) > 0.0).select(contact.solution.pressure, 0.0);
-  EXPECT_NEAR(right.sum() / contact.solution.pressure.sum(), 0.5, 10.0 * kEpsilon);
-  EXPECT_NEAR(hertzian_radius(model, right) / a, 1.0, mesh);
-  const double alone = a * a / paper::kRadius;
-  const double sunk = 0.5 * paper::kLoad / (pi * modulus * distance);
-  EXPECT_NEAR(approach(contact) / (alone + sunk), 1.0, mesh);
-  EXPECT_GT(sunk / alone, 5.0 * mesh);
-  const double centre = (right * cell_x1(model.grid)).sum() / right.sum() * model.length_unit;
-  EXPECT_NEAR((centre - 0.5 * distance) / shift, 1.0, 0.1);  // to (a/D)^2 and the mesh: shift is 0.08 cells
-}
-
-/// The normal stiffness of an annular punch agrees within 0.1 % with the capacity of an annular disc, Smythe
-/// (1951).
-TEST(Annulus, SinksInAsItsCapacitySays) {
-  constexpr double outer = 5e-4;
-  constexpr double ratio = 0.6;
-  const Scene scene = scene_of({punch(outer, ratio * outer)}, 96);
-  const Contact contact = press(scene);
-  const ArrayXd& p = contact.solution.pressure;
-  EXPECT_NEAR(load(contact) / paper::kLoad, 1.0, 1e-12);
-  EXPECT_TRUE(contact.model.pressure_part.diagonal());
-  const ArrayXd r = (cell_x1(contact.model.grid).square() + cell_x2(contact.model.grid).square()).sqrt() *
-                    contact.model.length_unit;
-  EXPECT_EQ((p > 0.0).count(), (r >= ratio * outer && r <= outer).count());
-  EXPECT_TRUE((r < ratio * outer).select(p == 0.0, true).all());
-  const double stiffness = 2.0 / pi *
-                           (std::acos(ratio) + std::sqrt(1.0 - ratio * ratio) * std::atanh(ratio)) *
-                           (1.0 + 0.0143 / ratio * std::pow(std::tan(1.28 * ratio), 3.0));
-  const double expected = paper::kLoad / (2.0 * effective_modulus(scene) * outer * stiffness);
-  // Circles made of squares are off by a part of a cell.
-  EXPECT_NEAR(approach(contact) / expected, 1.0, 1.0 / 96.0);
-  EXPECT_GT(expected, 1.03 * paper::kLoad / (2.0 * effective_modulus(scene) * outer)) << "a full face's";
-}
 
 TEST(BodiesOfRevolution, SinkInAsSneddonSays) {
   for (const Revolved& body : revolved()) {

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/grid/counted_area.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {

@@ -1,4 +1,4 @@
-#include "solver/input/dataset_writer.hpp"
+#include "solver/input/datasets.hpp"
 
 #include <fmt/ranges.h>
 #include <sys/resource.h>
@@ -9,24 +9,15 @@
 #include <sstream>
 #include <system_error>
 
-#include "solver/grid/ranks.hpp"
-#include "solver/hdf5/hdf5_library.hpp"
+#include "cmake/loaded_library.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 namespace fs = std::filesystem;
-
-using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
-
-/// The content of a dataset; first: where this rank's part begins.
-struct Content {
-  DatasetLayout layout;
-  std::size_t first;
-  std::function<void(const PutBytes& put)> write;
-};
 
 /// Where each dataset's values lie in a file.
 using Offsets = std::vector<off_t>;
@@ -51,18 +42,18 @@ void require_name(std::FILE* file, const fs::path& name) {
 
 /// Allocates the space for names first: HDF5 keeps data that it could not write and crashes when the process
 /// ends.
-Offsets lay_out(std::FILE* file, const fs::path& name, const std::vector<Content>& contents) {
+Offsets lay_out(std::FILE* file, const fs::path& name, const std::vector<LongDataset>& contents) {
   require_name(file, name);
   const std::string room(kNames, '\0');
   std::fwrite(room.data(), 1, room.size(), file);
   if (const int error = error_of(file)) fail(error);
   std::vector<DatasetLayout> layouts;
-  for (const Content& content : contents) layouts.push_back(content.layout);
+  for (const LongDataset& content : contents) layouts.push_back(content.layout);
   return hdf5_library(name).lay_out(name, layouts);
 }
 
 /// This rank's part of all datasets.
-void write_values(std::FILE* file, const Offsets& offsets, const std::vector<Content>& contents) {
+void write_values(std::FILE* file, const Offsets& offsets, const std::vector<LongDataset>& contents) {
   for (std::size_t k = 0; k < contents.size(); ++k) {
     const auto before = static_cast<off_t>(contents[k].first * contents[k].layout.bytes_of_value());
     if (fseeko(file, offsets[k] + before, SEEK_SET) != 0) fail(errno);
@@ -80,7 +71,7 @@ int first_error(int own, const Ranks& ranks) {
 }
 
 /// This rank's part of a draft that the first one has laid out; its error. what: the offsets, and its name.
-int write_into(const std::string& what, const std::vector<Content>& contents) {
+int write_into(const std::string& what, const std::vector<LongDataset>& contents) {
   if (what.empty()) return 0;
   std::istringstream text(what);
   Offsets offsets(contents.size());
@@ -97,7 +88,7 @@ int write_into(const std::string& what, const std::vector<Content>& contents) {
   return 0;
 }
 
-void write_shared(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
+void write_shared(const fs::path& path, const std::vector<LongDataset>& contents, const Ranks& ranks) {
   if (!ranks.first()) {
     first_error(write_into(ranks.of_first({}), contents), ranks);
     return;
@@ -120,54 +111,55 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents, co
 }
 
 /// Here too: the library crashes over a file that it may not make so large.
-void require_room(const fs::path& path, const std::vector<Content>& contents) {
+void require_room(const fs::path& path, const std::vector<LongDataset>& contents) {
   std::size_t bytes = kNames;
-  for (const Content& content : contents) bytes += content.layout.bytes();
+  for (const LongDataset& content : contents) bytes += content.layout.size * content.layout.bytes_of_value();
   rlimit most{};
   if (getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) {
     throw InputError(path.string(), why_not_written(EFBIG));
   }
 }
 
-/// ranks: the processes that hold parts of the contents.
-void write_hdf5(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
-  hdf5_library(path);
-  require_room(path, contents);
-  if (ranks.several()) return write_shared(path, contents, ranks);
-  write_whole_named_file(path, [&](std::FILE* file, const fs::path& draft) {
-    write_values(file, lay_out(file, draft, contents), contents);
-  });
+}  // namespace
+
+const Hdf5Library& hdf5_library(const std::filesystem::path& file) {
+  try {
+    static const Hdf5Library& library = *loaded_library<const Hdf5Library>("slipstick_hdf5");
+    return library;
+  } catch (const std::runtime_error& error) {
+    throw InputError(file.string(), fmt::format("HDF5 files are read and written by a library that cannot be "
+                                                "opened: {}; allowed: install it, or another format",
+                                                error.what()));
+  }
 }
 
-}  // namespace
+std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names,
+                                   int rank, Eigen::Index most) {
+  require_input_file(file, kLargestHdf5, "an HDF5 file");
+  return hdf5_library(file).read(file, names, rank, most);
+}
 
 void write_datasets(const fs::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts) {
-  std::vector<Content> contents;
+  std::vector<LongDataset> datasets;
   const auto add = [&](const DatasetLayout& layout, const void* values) {
-    contents.push_back({layout, 0, [=](const PutBytes& put) { put(values, layout.bytes()); }});
+    const std::size_t bytes = layout.size * layout.bytes_of_value();
+    datasets.push_back({layout, 0, [=](const PutBytes& put) { put(values, bytes); }});
   };
   for (const Column& column : columns) {
     add({column.name, false, static_cast<std::size_t>(column.values.size())}, column.values.data());
   }
   for (const NamedText& text : texts) add({text.name, true, text.text.size()}, text.text.data());
-  write_hdf5(file, contents, {});
+  write_datasets(file, datasets);
 }
 
 void write_datasets(const fs::path& file, const std::vector<LongDataset>& datasets, const Ranks& ranks) {
-  std::vector<Content> contents;
-  contents.reserve(datasets.size());
-  for (const LongDataset& dataset : datasets) {
-    contents.push_back({{dataset.name, false, static_cast<std::size_t>(dataset.size)},
-                        static_cast<std::size_t>(dataset.first),
-                        [&dataset](const PutBytes& put) {
-                          for (Index i = 0; i < dataset.pieces; ++i) {
-                            const std::vector<double> values = dataset.piece(i);
-                            put(values.data(), values.size() * sizeof(double));
-                          }
-                        }});
-  }
-  write_hdf5(file, contents, ranks);
+  hdf5_library(file);
+  require_room(file, datasets);
+  if (ranks.several()) return write_shared(file, datasets, ranks);
+  write_whole_named_file(file, [&](std::FILE* stream, const fs::path& draft) {
+    write_values(stream, lay_out(stream, draft, datasets), datasets);
+  });
 }
 
 }  // namespace slipstick::solver
