@@ -9,7 +9,7 @@
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
-#include "solver/grid/mirror.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
