@@ -16,7 +16,7 @@ from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
-from slipstick import exact
+from slipstick import InputError, exact
 from slipstick.law_fits import Curve, ParallelElements
 from slipstick.laws import Law as PackageLaw
 from slipstick.laws import Units
@@ -367,8 +367,8 @@ class Options(unittest.TestCase):
             self.assertIn("sphere", self.refused(SCENES / "cone.toml", "--write", f"{folder}/law.sdf"))
             self.assertEqual(list(Path(folder).iterdir()), [])
         self.assertIn("--error", self.refused("--error", 0))
-        self.assertIn("--table-error", self.refused("--table-error", "1e-9"))
-        self.assertIn("--elements", self.refused("--elements", 0))
+        self.assertRaisesRegex(InputError, "--table-error", PackageLaw, table_error=1e-9)
+        self.assertRaisesRegex(InputError, "--elements", PackageLaw, elements=0)
         self.assertIn("--prefix", self.refused("--prefix", "a-b"))
         self.assertIn("--profile", self.refused("--profile", "disc"))
         self.assertIn("ellipsoid", self.refused(SCENES / "ellipse.toml"))
