@@ -50,6 +50,7 @@ def _force_law(gap: float) -> Any:
 
 def _contact(given: dict[str, Any]) -> Contact:
     exponent = given["radius_exponent"]
+
     def number(value: Optional[float]) -> float:  # JSON has no infinity
         return math.inf if value is None else value
 
