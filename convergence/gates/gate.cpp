@@ -119,7 +119,8 @@ std::string out_of_bounds_text(const Judgement& judgement) {
   const bool has_factor =
       std::holds_alternative<Below>(judgement.gate.bound) && std::isfinite(judgement.factor);
   return fmt::format("{} is {}, must be {}{}", judgement.gate.quantity,
-                     value.is_number() ? number_text(value) : value.dump(), bound_text(judgement),
+                     value.is_number() ? number_text(value.get<double>()) : value.dump(),
+                     bound_text(judgement),
                      has_factor ? fmt::format(": {:.3g} times the bound", judgement.factor) : "");
 }
 

@@ -181,8 +181,7 @@ std::optional<PrintedNumber> read_printed(const std::string& text);
 ///      (`uncertainty`) or in an object around it (relative_uncertainty).
 ///   2. The numbers agree within half a unit of the last printed digit + argument_error + our own error.
 ///   3. Where our own error is larger than the other two, agreement shows nothing: the outcome is `reported`
-///   if
-///      the gate file says undecided, else `refused`.
+///      if the gate file says undecided, else `refused`.
 /// Throws InputError where no error of ours is known.
 Judgement judge_published(const Gate& gate, const Json& result);
 

@@ -196,10 +196,10 @@ void add_verdict(Json& json, const Judged& judged) {
   if (!judged.reason.empty()) json.push_back({"reason", judged.reason});
   if (!judged.numbers) return;
   const JudgedNumbers& numbers = *judged.numbers;
-  set_number(json, "operator_applications", numbers.operator_applications);
-  set_number(json, "pressure_applications", numbers.pressure_applications);
-  set_number(json, "seconds.total", numbers.seconds);
-  set_number(json, "slip_direction.mean", numbers.slip_direction);
+  set_numbers(json, {{"operator_applications", numbers.operator_applications},
+                     {"pressure_applications", numbers.pressure_applications},
+                     {"seconds.total", numbers.seconds},
+                     {"slip_direction.mean", numbers.slip_direction}});
   if (numbers.safeguards) json.push_back({"safeguards", to_json(*numbers.safeguards)});
   set_known(json, "error", numbers.error);
   set_known(json, "uncertainty", numbers.uncertainty);

@@ -35,11 +35,11 @@ Json to_json(const SceneDescription& scene) {
 Json to_json(const PageNumber& row) {
   Json json{
       {"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
-  set_number(json, "reference", row.reference);
-  set_number(json, "error", row.error);
-  set_number(json, "mesh", row.mesh);
-  set_number(json, "path", row.path);
-  set_number(json, "uncertainty", row.uncertainty);
+  set_numbers(json, {{"reference", row.reference},
+                     {"error", row.error},
+                     {"mesh", row.mesh},
+                     {"path", row.path},
+                     {"uncertainty", row.uncertainty}});
   return json;
 }
 
@@ -48,25 +48,20 @@ Json to_json(const CostPoint& point) {
             {"cells", point.cells},
             {"tolerance", point.tolerance},
             {"status", point.status}};
-  set_number(json, "seconds", point.seconds);
-  set_number(json, "error", point.error);
+  set_numbers(json, {{"seconds", point.seconds}, {"error", point.error}});
   return json;
 }
 
 Json to_json(const PageProgram& row) {
   Json json{{"name", row.name},       {"cells", row.cells},     {"status", row.status},
             {"version", row.version}, {"message", row.message}, {"number", row.number}};
-  set_number(json, "seconds", row.seconds);
-  set_number(json, "cpu_seconds", row.cpu_seconds);
-  set_number(json, "error", row.error);
+  set_numbers(json, {{"seconds", row.seconds}, {"cpu_seconds", row.cpu_seconds}, {"error", row.error}});
   return json;
 }
 
 Json to_json(const OperatorTime& row) {
   Json json{{"operator", row.kind}, {"cells", row.cells}};
-  set_number(json, "seconds", row.seconds);
-  set_number(json, "low", row.low);
-  set_number(json, "high", row.high);
+  set_numbers(json, {{"seconds", row.seconds}, {"low", row.low}, {"high", row.high}});
   return json;
 }
 
@@ -91,9 +86,7 @@ Json to_json(const Cost& cost) {
 
 Json to_json(const OperatorTimes& times) {
   Json json{{"rows", list(times.rows)}, {"remark", times.remark}};
-  set_number(json, "cells", times.cells);
-  set_number(json, "low", times.low);
-  set_number(json, "high", times.high);
+  set_numbers(json, {{"cells", times.cells}, {"low", times.low}, {"high", times.high}});
   return json;
 }
 

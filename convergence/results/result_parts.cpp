@@ -77,23 +77,15 @@ void set_number(Json& object, const std::string& key, const Number& number) {
   set_number(object, key, number, number.why_missing);
 }
 
-namespace {
-
-double number_of(const Json& json) { return json.is_number() ? json.get<double>() : NAN; }
-
-}  // namespace
+void set_numbers(Json& object, std::initializer_list<std::pair<const char*, const Number&>> numbers) {
+  for (const auto& [key, number] : numbers) set_number(object, key, number);
+}
 
 std::string number_text(double value, std::string_view format) {
   return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
 }
 
-std::string number_text(const Json& value, std::string_view format) {
-  return number_text(number_of(value), format);
-}
-
 std::string short_text(double value) { return number_text(value, "{:.4g}"); }
-
-std::string short_text(const Json& value) { return short_text(number_of(value)); }
 
 std::string percent_text(double part) {
   if (std::isnan(part)) return "-";
@@ -101,8 +93,6 @@ std::string percent_text(double part) {
   if (!(percent < 1e4)) return "over 10,000 %";
   return percent < 100.0 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
-
-std::string percent_text(const Json& part) { return percent_text(number_of(part)); }
 
 std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);

@@ -11,8 +11,8 @@
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/solution_fields.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/run_list.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
@@ -97,7 +97,7 @@ Worker::Event Worker::next() {
 }
 
 ProgramEnd Worker::wait() {
-  let_end();
+  program_.end_feed();
   return program_.wait();
 }
 

@@ -33,10 +33,7 @@ class Worker {
   enum class Event { output, finished, ended };
   Event next();
 
-  /// Lets the process end after its run, where it has not ended.
-  void let_end() { program_.end_feed(); }
-
-  /// Waits for the end of the process.
+  /// Lets the process end after its run, where it has not ended, and waits for its end.
   ProgramEnd wait();
 
  private:

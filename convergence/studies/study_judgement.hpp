@@ -53,8 +53,7 @@ struct MeshResults {
 
 /// Orders, limits and budgets of a series.
 ///   1. Chooses the quantities: from the study file, or all errors that the result has, and the values that
-///   the
-///      exact answer does not have.
+///      the exact answer does not have.
 ///   2. Takes mean and spread of each quantity on each mesh, and the budget of its error.
 ///   3. Fits the order; of values also the limit, and continues with their distances from it.
 SeriesResult judge_series(const Study& study, const Series& series, const std::vector<MeshResults>& results);

@@ -34,9 +34,7 @@ Json to_json(const std::vector<StudyRow>& rows) {
 
 Json to_json(const MeshQuantity& at) {
   Json json{{"grids", at.grids}};
-  set_number(json, "mean", at.mean);
-  set_number(json, "spread", at.spread);
-  set_number(json, "noise", at.noise);
+  set_numbers(json, {{"mean", at.mean}, {"spread", at.spread}, {"noise", at.noise}});
   return json;
 }
 
@@ -65,21 +63,20 @@ Json to_json(const QuantityResult& quantity) {
 
 Json to_json(const Extrapolated& limit) {
   Json json;
-  set_number(json, "value", limit.value);
-  set_number(json, "uncertainty", limit.uncertainty);
+  set_numbers(json, {{"value", limit.value}, {"uncertainty", limit.uncertainty}});
   json.emplace("method", limit.method);
   return json;
 }
 
 Json to_json(const BudgetLine& line, const std::string& quantity, const MeshRow& mesh) {
   Json json{{"quantity", quantity}, {"cells", mesh.cells}, {"h", line.h}};
-  set_number(json, "observed", line.observed);
-  set_number(json, "discretisation", line.discretisation);
-  set_number(json, "iteration", line.iteration);
-  set_number(json, "rounding", line.rounding);
-  set_number(json, "reference", line.reference);
-  set_number(json, "trend", line.trend);
-  set_number(json, "staircase", line.staircase);
+  set_numbers(json, {{"observed", line.observed},
+                     {"discretisation", line.discretisation},
+                     {"iteration", line.iteration},
+                     {"rounding", line.rounding},
+                     {"reference", line.reference},
+                     {"trend", line.trend},
+                     {"staircase", line.staircase}});
   return json;
 }
 
