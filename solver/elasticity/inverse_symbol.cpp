@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "solver/elasticity/mirrored_inverse_symbol.hpp"
 #include "solver/elasticity/symbol_table.hpp"
 #include "solver/fft/periodic_transform.hpp"
 
@@ -145,7 +144,7 @@ std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const Block
   if (part_of(grid, kernel, options.diagonal) == Part::whole) {
     return std::make_unique<PeriodicInverseSymbol>(grid, tangential, law, options);
   }
-  return std::make_unique<MirroredInverseSymbol>(grid, tangential, law, options);
+  return make_mirrored_inverse_symbol(grid, tangential, law, options);
 }
 
 }  // namespace slipstick::solver

@@ -17,7 +17,7 @@ namespace slipstick::solver {
 /// 3. The inverse transform.
 ///
 /// On a quadrant the same for the field and its mirror images, by cosine and sine transforms
-/// (mirrored_inverse_symbol.hpp). Self-adjoint and positive definite; the transforms round by a few eps of
+/// (mirrored_inverse_symbol.cpp). Self-adjoint and positive definite; the transforms round by a few eps of
 /// the largest value.
 class InverseSymbol {
  public:
@@ -36,5 +36,9 @@ class InverseSymbol {
 std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                    const ElasticLaw& law,
                                                    const OperatorOptions& options = {});
+/// On a quadrant.
+std::unique_ptr<InverseSymbol> make_mirrored_inverse_symbol(const Grid& grid, bool tangential,
+                                                            const ElasticLaw& law,
+                                                            const OperatorOptions& options);
 
 }  // namespace slipstick::solver
