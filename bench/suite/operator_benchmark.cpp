@@ -7,12 +7,12 @@
 #include <iterator>
 #include <random>
 
-#include "bench/suite/four_transforms.hpp"
 #include "bench/suite/suite.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
+#include "solver/fft/fftw.hpp"
 #include "solver/grid/reduction.hpp"
 
 namespace slipstick::bench {
@@ -159,10 +159,25 @@ Prepared set_up(const Form& form, Index cells) {
           .timing = repeated([form, grid] { benchmark::DoNotOptimize(make(form, grid)); })};
 }
 
+/// Two forward and two backward transforms of padded fields, by plain FFTW: the least time of a convolution
+/// that does not exploit its padding, and the unit in which times of different machines can be compared.
 Prepared bare_transforms(Index cells) {
-  const auto transforms = std::make_shared<FourTransforms>(cells);
+  const auto n = static_cast<int>(fast_length(2 * cells - 1));
+  const std::size_t size = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  const auto field = std::make_shared<FftwBuffer>(size);
+  const auto spectrum = std::make_shared<FftwBuffer>(size + 2 * static_cast<std::size_t>(n));
+  const auto forward = std::make_shared<FftwPlan>(
+      fftw_plan_dft_r2c_2d(n, n, field->data(), spectrum->complex(), FFTW_ESTIMATE));
+  const auto backward = std::make_shared<FftwPlan>(
+      fftw_plan_dft_c2r_2d(n, n, spectrum->complex(), field->data(), FFTW_ESTIMATE));
+  std::fill_n(field->data(), size, 0.0);  // planning has written there
   return {.counters = {{"GFLOP/s", rate(1e-9 * operations(OperatorKind::dcfft, cells))}},
-          .timing = repeated([transforms] { (*transforms)(); })};
+          .timing = repeated([=] {
+            for (int i = 0; i < 2; ++i) {
+              fftw_execute_dft_r2c(forward->get(), field->data(), spectrum->complex());
+              fftw_execute_dft_c2r(backward->get(), spectrum->complex(), field->data());
+            }
+          })};
 }
 
 /// Cells along a side: 2^k, and 3 2^k where a law is fitted to times. Padded lengths are exactly twice as
