@@ -13,8 +13,8 @@
 #include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/run_options.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 

@@ -15,9 +15,9 @@
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/worker.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"

@@ -83,7 +83,8 @@ SolvePlan plan_solve(const Scene& scene, int ranks) {
     require_oracle(scene);
     return {};
   }
-  const solver::Model model = solver::make_model(scene, ranks > 1 ? solver::Ranks::planned(ranks) : solver::Ranks());
+  const solver::Model model =
+      solver::make_model(scene, ranks > 1 ? solver::Ranks::planned(ranks) : solver::Ranks());
   const ContactOnGrid contact = contact_on_grid(scene);
   const double radius = 0.5 * cells_across(contact, std::max(model.grid.n1, model.grid.n2));
   const solver::Reduction& part = model.pressure_part;

@@ -69,8 +69,8 @@ typedef struct slipstick_state {
 int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
                            slipstick_state* states);
 
-/* As slipstick_exact with SLIPSTICK_ENERGY_LOST, to a relative error from 1e-14 (its own) to below 1: a larger
- * one takes a tenth of the time for profiles without a closed form. */
+/* As slipstick_exact with SLIPSTICK_ENERGY_LOST, to a relative error from 1e-14 (its own) to below 1: a
+ * larger one takes a tenth of the time for profiles without a closed form. */
 int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values,
                                 double relative_error, double* results);
 
