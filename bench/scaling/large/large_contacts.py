@@ -9,6 +9,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 FIELDS = 2  # of tractions; the normal problem has one
 COMPLEX = 16  # bytes
 GIB = 2.0**30
@@ -46,18 +48,9 @@ CLUSTER = Machine("16 nodes", 16, **NODE)
 
 def fit(rows, terms):
     """Factors of terms(row) with the least squares of relative residuals; rows: (size, value)."""
-    size = range(len(terms(1)))
-    sums = [[sum(terms(n)[i] * terms(n)[j] / v**2 for n, v in rows) for j in size] for i in size]
-    right = [sum(terms(n)[i] / v for n, v in rows) for i in range(len(sums))]
-    for k, row in enumerate(sums):  # a positive definite system: no pivots needed
-        for other in range(k + 1, len(sums)):
-            factor = sums[other][k] / row[k]
-            sums[other] = [a - factor * b for a, b in zip(sums[other], row)]
-            right[other] -= factor * right[k]
-    found = [0.0] * len(sums)
-    for k in reversed(range(len(sums))):
-        found[k] = (right[k] - sum(sums[k][j] * found[j] for j in range(k + 1, len(sums)))) / sums[k][k]
-    return found
+    values = np.array([value for _, value in rows])
+    matrix = np.array([terms(n) for n, _ in rows]) / values[:, None]
+    return np.linalg.lstsq(matrix, np.ones(len(rows)), rcond=None)[0]
 
 
 class Law:
