@@ -171,7 +171,3 @@ class Page(unittest.TestCase):
         (width, height), = pdf.paper_sizes(content)
         self.assertAlmostEqual(width, 210, delta=1)
         self.assertAlmostEqual(height, 297, delta=1)
-
-
-if __name__ == "__main__":
-    unittest.main(verbosity=2 if browser.MISSING else 1)  # why it is skipped

@@ -49,7 +49,3 @@ class Words(unittest.TestCase):
         (x1, y1, _), (x2, y2, _) = found
         self.assertLess(float(x1), float(x2))
         self.assertLess(float(y1), float(y2))  # downwards: 0.5 stands above 0.25
-
-
-if __name__ == "__main__":
-    unittest.main()

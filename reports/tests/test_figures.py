@@ -194,7 +194,3 @@ class OneFigure(Folder):
         entry = figures.shear_components(self.report, self.folder)
         error = entry.figure.axes[2].images[0].get_array()
         self.assertAlmostEqual(float(error.max()), 0.02 / (FRICTION * PEAK), places=12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -355,7 +355,3 @@ class PageWithGaps(Folder):
         exit_code, errors = run_render(self.folder / "nowhere")
         self.assertEqual(exit_code, 2)
         self.assertIn("No such file", errors)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -251,7 +251,3 @@ class Refusals(Figure):
         self.write(np.array([0.0, 1.0, 2.5]), np.zeros(3), {"cell_size": [1.0, 1.0]})
         with self.assertRaises(Unavailable):
             self.solved()
-
-
-if __name__ == "__main__":
-    unittest.main()

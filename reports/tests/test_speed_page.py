@@ -166,7 +166,3 @@ class Page(unittest.TestCase):
         page = self.render(save_nothing, scaling=scaling(families=[], crossovers=[]), plane=plane())
         self.assertIn("Not available", page)
         self.assertIn("10\N{NO-BREAK SPACE}ms: 64² cells", page)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -378,7 +378,3 @@ class Script(Folder):
         run = subprocess.run([sys.executable, "-B", REPORTS / "study_figure.py", "--help"], capture_output=True, text=True)
         self.assertEqual(run.returncode, 0)
         self.assertIn("RESULT", run.stdout.upper())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -119,7 +119,3 @@ class OfTimes(unittest.TestCase):
         self.assertEqual(beside_heads(table), [
             ("is quicker than", "application/dcfft"), ("", "application/direct"), ("from cells a side", "12"),
             ("95 % interval", "11 to 13"), ("remark", "beyond what was measured")])
-
-
-if __name__ == "__main__":
-    unittest.main()

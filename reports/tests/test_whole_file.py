@@ -84,7 +84,3 @@ class WholeFile(unittest.TestCase):
             with self.assertRaisesRegex(OSError, str(path)):
                 write_whole(path, b"text")
         self.assertEqual(self.names(), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -273,7 +273,3 @@ class MadeTimesTest(unittest.TestCase):
                 first, confirmed = self.judged(lambda: draw(generator, 30, repetitions, paired, 1, 1.15, **noise))
                 self.assertNotEqual(first, 0)
                 self.assertEqual(confirmed, 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -94,7 +94,3 @@ class RefusalsTest(unittest.TestCase):
         self.assert_refused("moment_ratios[1]", exact.history, [0.5, -2.0])
         self.assert_refused("zero byte", exact.twist, 0.5, profile="hertz\0cone")
         self.assertTrue(issubclass(InputError, ValueError))
-
-
-if __name__ == "__main__":
-    unittest.main()

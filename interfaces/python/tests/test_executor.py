@@ -88,7 +88,3 @@ class ExecutorTest(unittest.TestCase):
             killer.join()
         self.assertEqual(study.failed_runs.count, 0)
         self.assertEqual(numbers(study), numbers(slipstick.study(self.folder / "study.toml")))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -104,7 +104,3 @@ class ScalingTest(unittest.TestCase):
         law = scaling(Timings("one.json", [timed("set_up/dcfft/cells:64", 1.0)]))[0]["power_law"]
         self.assertEqual((law["exponent"], law["theory"]), (None, None))
         self.assertEqual(scaling(Timings("none.json", [])), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

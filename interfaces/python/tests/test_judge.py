@@ -210,7 +210,3 @@ class MachineryTest(unittest.TestCase):
     def test_frames(self):
         result = slipstick.Result({"rows": [{"a": 1, "b": {"c": 2}}, {"a": 3, "b": {"c": 4}}]})
         self.assertEqual(list(result.to_frame()["b.c"]), [2, 4])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -120,7 +120,3 @@ class LawsTest(unittest.TestCase):
         self.assertAlmostEqual(solved.moment / (0.9 * law.moment_limit), 1, 12)
         twist = np.array([solved.twist_angle / law.units["rotation_unit"]])
         self.assertAlmostEqual(moment_ratio(same.fit, twist)[0], 0.9, delta=1e-6)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -381,7 +381,3 @@ class Loops(unittest.TestCase):
                     except InputError as error:
                         self.assertIn("1e-100..1e100", str(error))
         self.assertGreater(judged_files, 3)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -37,7 +37,3 @@ class NotebookTest(unittest.TestCase):
                 self.assertEqual(cell.get("outputs", []), [], "outputs are not kept")
                 if cell["cell_type"] == "code":
                     run_cell("".join(cell["source"]), namespace, f"{file.name}, cell {number}")
-
-
-if __name__ == "__main__":
-    unittest.main()

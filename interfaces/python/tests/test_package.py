@@ -60,7 +60,3 @@ class PackageTest(unittest.TestCase):
         self.assertEqual((run.returncode, run.stdout.strip()), (0, slipstick.__version__))
         version = re.search(r"VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text()[40:])[1]
         self.assertEqual(slipstick.__version__, version)
-
-
-if __name__ == "__main__":
-    unittest.main()

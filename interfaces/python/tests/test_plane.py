@@ -127,7 +127,3 @@ class AccuracyTest(unittest.TestCase):
                 mesh[name] = [float(value) for value in re.search(f"{name} = {numbers}", part)[1].split(",")]
             meshes.append(mesh)
         self.assertEqual(plane.accuracy_toml(meshes, text.splitlines()[1][2:]), text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -90,7 +90,3 @@ class HodgesLehmannTest(unittest.TestCase):
             hits += [shift.low <= moved <= shift.high for shift in shifts]
         for hit, share in zip(hits, (1 - 2 * 3996 / 184756, 1 - 2 * 87 / 4096)):
             self.assertAlmostEqual(hit / draws, share, delta=3 * math.sqrt(share * (1 - share) / draws))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -359,7 +359,3 @@ class ProgressTest(unittest.TestCase):
         with ThreadPoolExecutor(4) as pool:
             together = list(pool.map(lambda load: slipstick.solve(SPHERE, load__moment_ratio=load).twist_angle, loads))
         self.assertEqual(alone, together)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -106,7 +106,3 @@ class TimingsTest(unittest.TestCase):
                 compared += 1
         self.assertGreaterEqual(compared, 9)
         self.assertTrue(math.isnan(timings.parse((CORPUS / "bare-nan.json").read_text(), "new.json").benchmarks[0].real[0]))
-
-
-if __name__ == "__main__":
-    unittest.main()
