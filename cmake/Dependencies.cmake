@@ -104,6 +104,8 @@ else()
 python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
 endif()
 
+set(SLIPSTICK_RUN_TEST ${PROJECT_SOURCE_DIR}/convergence/tests/run_test.py)  # runs the cases of another file
+
 # Optional: reads docs/schema.
 if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
   execute_process(COMMAND "${SLIPSTICK_PYTHON}" -c "from jsonschema import Draft202012Validator"

@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """exact_command_test.py PROGRAM: `slipstick exact` as users run it."""
 
 import json
 import math
-import sys
 from decimal import Decimal
 from math import pi
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
-from program_run import ProgramTest, main
+from program_run import ProgramTest
 
 STICK = 0.8135681261276496  # at half the limit moment
 
@@ -196,7 +192,3 @@ class Exact(ProgramTest):
         self.assertIn("radius", found["traction"][0]["value"])
         self.text(state, says="+/-")
         self.refused("--twist 0.1 --certified 20 --profile rounded_punch:0.5", "rounded_punch:0.5", "allowed")
-
-
-if __name__ == "__main__":
-    main()

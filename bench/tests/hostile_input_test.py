@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """hostile_input_test.py PROGRAM: every reader of the program against every way in which a file can be damaged: each is
 refused at once, with its name, the allowed content and exit code 2. The findings of fuzzers are kept in the corpora of
 the readers."""
@@ -7,12 +6,10 @@ import json
 import math
 import os
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
-from program_run import PROGRAM, SHORT_SCENE, ProgramTest, main
+from program_run import PROGRAM, SHORT_SCENE, ProgramTest
 
 RADIUS = 4.89e-4
 EXTENT = 8 / 3 * RADIUS  # of the contact and a cell around it
@@ -338,7 +335,3 @@ class HostileInput(ProgramTest):
         said = self.run_program("solve", "scene.toml", code=2, says="\\x1b]0;title")
         self.assertNotIn("\x1b", said)
         self.assertNotIn("\x07", said)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """hostile_output_test.py PROGRAM: what the program says and writes, whatever names, files and limits it is given."""
 
 import json
@@ -7,14 +6,12 @@ import random
 import resource
 import signal
 import subprocess
-import sys
 import time
 import unicodedata
 import xml.etree.ElementTree
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
-from program_run import PROGRAM, SHORT_SCENE, ProgramTest, main
+from program_run import PROGRAM, SHORT_SCENE, ProgramTest
 
 NASTY = "a\n::error::b\n  ::warning::c\n\u2003::d\n##vso[task.x]e\n##[error]f\n\x1b]0;g\x07\x7f\u009b1m\r::h\ufffe"
 IN_TOML = json.dumps(NASTY)
@@ -190,7 +187,3 @@ class HostileOutput(ProgramTest):
                 while list(folder.iterdir()) and time.monotonic() < until:
                     time.sleep(0.01)
                 self.assertEqual(list(folder.iterdir()), [], (kill, number))
-
-
-if __name__ == "__main__":
-    main()

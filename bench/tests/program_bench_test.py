@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """program_bench_test.py PROGRAM: `slipstick bench` as users run it, on made programs: exit codes and output written
 where."""
 
 import json
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
-from program_run import ProgramTest, main
+from program_run import ProgramTest
 
 # Behaves as Google Benchmark's programs do, with benchmarks that all take so long, and notes each of its runs.
 MADE = r"""#!/bin/sh
@@ -92,7 +89,3 @@ class ProgramBench(ProgramTest):
 
     def test_refuses_what_it_cannot_do(self):
         self.run_program("bench", "--against", "nothing", "--program", "nothing", code=2)
-
-
-if __name__ == "__main__":
-    main()

@@ -296,7 +296,3 @@ class Schemas(unittest.TestCase):
         self.assertEqual(unexplained({"a": None, "b": 1, "b_reason": "none"}), ["$.a", "$.b_reason"])
         with self.assertRaises(ValueError):
             parse(json.dumps({"moment": float("nan")}))
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

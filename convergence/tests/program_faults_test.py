@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """program_faults_test.py PROGRAM: how commands end if they cannot write, or find no memory or processes. main() writes
 for all commands, so all are tested here."""
 
@@ -9,7 +8,7 @@ import signal
 import subprocess
 from pathlib import Path
 
-from program_run import PROGRAM, SCENES, ProgramTest, main
+from program_run import PROGRAM, SCENES, ProgramTest
 
 PAPER = str(SCENES / "paper.toml")
 SMALL = ("solve", PAPER, "--set", "grid.cells=[12,12]")
@@ -174,7 +173,3 @@ class ProgramFaults(ProgramTest):
                 self.ends((*SMALL, "--set", "solver.threads=1"), 0, limit)
                 complaint = self.ends((*SMALL, "--set", "solver.threads=64"), 2, limit)
                 self.assertIn("solver.threads = 64: allowed: up to ", complaint)
-
-
-if __name__ == "__main__":
-    main()

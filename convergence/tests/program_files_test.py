@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """program_files_test.py PROGRAM: commands overwrite none of their input files, and file names may have any bytes."""
 
 import json
@@ -6,7 +5,7 @@ import os
 import shutil
 from pathlib import Path
 
-from program_run import SHORT_SCENE, SOURCE, ProgramTest, main
+from program_run import SHORT_SCENE, SOURCE, ProgramTest
 
 FIELD = SOURCE / "convergence/check/fields/contact-64-0.9.csv"
 ODD = b"-a b\n'c\" $x `y` <z>&{} \xff"
@@ -84,7 +83,3 @@ class ProgramFiles(ProgramTest):
         name = b"caf\xe9.csv"
         shutil.copy(FIELD, os.fsdecode(name))
         self.result("check", str(SOURCE / "convergence/scenes/paper.toml"), name)
-
-
-if __name__ == "__main__":
-    main()

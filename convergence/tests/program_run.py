@@ -61,7 +61,3 @@ class ProgramTest(unittest.TestCase):
     def write(self, name, text):
         Path(name).write_text(text)
         return name
-
-
-def main():
-    unittest.main(argv=sys.argv[:1])

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """program_test.py PROGRAM: output, files and exit codes of the commands."""
 
 import json
@@ -9,7 +8,7 @@ import sys
 from pathlib import Path
 from unittest.mock import patch
 
-from program_run import PROGRAM, SCENES, SOURCE, ProgramTest, main
+from program_run import PROGRAM, SCENES, SOURCE, ProgramTest
 
 sys.path.insert(0, str(SOURCE / "cmake/tests"))
 try:
@@ -266,7 +265,3 @@ class Program(ProgramTest):
                             ("field.csv: row 1: q1 is no number", "allowed: NaN where there is no contact")),
                            ("x1,x2,p,q1,q2\n0,0,1,0,0\n", "no column pressure; its columns: x1, x2, p, q1, q2")):
             self.run_program("check", str(SCENES / "paper.toml"), self.write("field.csv", text), code=2, says=says)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """resume_test.py PROGRAM: a history killed between steps or in a step resumes from its checkpoint and ends with the
 digits of an uninterrupted one; a checkpoint of another scene or program is refused."""
 
@@ -127,7 +126,3 @@ class ResumeTest(unittest.TestCase):
         self.assertIn("cannot be written", self.run_program(*small, "--checkpoint", "no/where.h5", code=2))
         drawn = ("--set", "solver.rounding_seed=1", "--checkpoint", "a.h5")
         self.assertIn("solver.rounding_seed = 1", self.run_program(*small, *drawn, code=2))
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)

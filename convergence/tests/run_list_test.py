@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """run_list_test.py PROGRAM GUIDE: listed runs of a study, of gates and of hard scenes, solved one by one, give the result
 of one command; missing and killed runs are listed again. The guide's commands are run from its text if their programs are
 installed."""
@@ -242,7 +241,3 @@ class OneLinersTest(unittest.TestCase):
         self.assertEqual(len(before), 2)
         self.assertIn("2 gates: 2 passed", self.shell(judge, GITHUB_STEP_SUMMARY="summary.md"))
         self.assertEqual({path: path.stat().st_mtime_ns for path in self.folder.glob("kept/*")}, before)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)

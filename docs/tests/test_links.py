@@ -132,7 +132,3 @@ class ReadmeTest(unittest.TestCase):
         screen = "\n".join(lines[:40])
         for wanted in ["make report", "make test", "![Twist against load"]:
             self.assertIn(wanted, screen)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -77,7 +77,3 @@ class RunnerTest(unittest.TestCase):
         self.assert_found("<!-- around:\nint main(void) { @@ }\n-->\n```c\nreturn 0\n```\n", "ended with 1")
         self.assert_found("```\nwhat is this\n```\n", "neither run nor text")
         self.assert_found("- in a list\n\n  ```sh\n  true\n  ```\n", "an indented block")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -1,18 +1,15 @@
-#!/usr/bin/env python3
 """certified_test.py PROGRAM: the digits of `slipstick exact --certified` against those by other ways than its code's: integrals of
 the pressure instead of superposed punches, mpmath's elliptic integrals instead of means."""
 
 import csv
 import json
-import sys
 from functools import cache
 from itertools import product
 from pathlib import Path
 
 from mpmath import acosh, atan, atanh, cosh, ellipe, ellipk, hyp2f1, linspace, log, mp, mpf, pi, quad, sqrt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "convergence/tests"))
-from program_run import ProgramTest, main
+from program_run import ProgramTest
 
 mp.dps = 50
 NAMES = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")
@@ -226,7 +223,3 @@ class Certified(ProgramTest):
         self.refused("flat_punch", "stick_ratio", "0.5", "--radius", "1.0", says=["infinite", "0 <= r/a < 1"])
         for n in ("0", "-1", "", "x"):
             self.refused(f"power:{n}", "stick_ratio", "0.5", says="--")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """program_compare_test.py PROGRAM: `slipstick compare` as users run it: exit codes and output."""
 
 import json
 import random
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "convergence/tests"))
-from program_run import ProgramTest, main
+from program_run import ProgramTest
 
 MACHINE = {"host_name": "somewhere", "num_cpus": 8, "mhz_per_cpu": 3000, "cpu_scaling_enabled": False,
            "caches": [{"type": "Unified", "level": 2, "size": 2097152, "num_sharing": 1}], "load_avg": [0.3, 0.2, 0.1],
@@ -135,7 +132,3 @@ class ProgramCompare(ProgramTest):
         self.compare(None, "--quiet", "--summary", "out.md", code=2)
         self.assertLess(Path("out.md").stat().st_size, 64000)
         self.assertIn("none worse than these, are left out here", Path("out.md").read_text())
-
-
-if __name__ == "__main__":
-    main()

@@ -61,7 +61,3 @@ class LargeContactsTest(unittest.TestCase):
         page = (ROOT / "docs/large-contacts.md").read_text()
         for name, text in large.tables(COUNTS).items():
             self.assertIn(text, page, f"{name}: python3 bench/scaling/large/large_contacts.py shows what changed")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

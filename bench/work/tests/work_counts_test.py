@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """work_counts_test.py PROGRAM: counts of work that are known beforehand, and the reader of callgrind's files."""
 
 import json
@@ -89,7 +88,3 @@ class CallgrindTest(unittest.TestCase):
         for text in (CALLGRIND + "totals: 1112\n", CALLGRIND, "", "events: Ir\ntotals: 0\n"):
             with self.assertRaisesRegex(ValueError, "not what callgrind writes"):
                 self.read(text)
-
-
-if __name__ == "__main__":
-    unittest.main()

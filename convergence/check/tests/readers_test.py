@@ -154,7 +154,3 @@ class Readers(unittest.TestCase):
         with h5py.File(self.folder / "link.h5", "w") as opened:
             opened["a"] = h5py.ExternalLink("matrices.h5", "/")
         self.assertRegex(self.check("link.h5", "--columns", ",".join(f"a/{name}" for name in NAMES)), "is a link")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 """program_gate_test.py PROGRAM: the exit codes and files of `slipstick gate`, with gates on a coarse grid."""
 
 import json
 import math
 import os
-import sys
 import xml.etree.ElementTree
 from datetime import datetime
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SCENES, ProgramTest, main
+from program_run import SCENES, ProgramTest
 
 PAPER = SCENES / "paper.toml"
 LOOSE = "below = 1e-7"
@@ -179,7 +176,3 @@ class GateProgram(ProgramTest):
         self.write("two.toml", gate("one", LOOSE) + gate("two", "below = 1e-6"))
         self.gate("two.toml", says="[1/1]")
         self.assertNotIn("[1/1]", self.gate("two.toml"))
-
-
-if __name__ == "__main__":
-    main()

@@ -109,7 +109,3 @@ class Audit(unittest.TestCase):
         for row in solved[::10]:
             row["scene"] = str((HARD / row["scene"]).resolve())
             self.assertEqual(self.findings(row), set(), f"{row['family']} {row['case']}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -125,7 +125,3 @@ class ThirdOpinion(unittest.TestCase):
 
     def test_of_patches(self):
         self.expect_agreement("unequal_patches", "grid.cells=[30, 16]")
-
-
-if __name__ == "__main__":
-    unittest.main()

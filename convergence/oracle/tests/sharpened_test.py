@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """sharpened_test.py PROGRAM: fields whose square-root edges are read off are nearer to the exact ones, whatever the contact's
 law and load; they keep to the friction's bound; edges that are no root on these cells are left as they are."""
 
@@ -77,7 +76,3 @@ class Sharpened(unittest.TestCase):
                 across = rows["q1_sharpened"] * rows["q2"] - rows["q2_sharpened"] * rows["q1"]
                 self.assertLessEqual(np.abs(across).max(), 1e-9 * largest**2, scene)
                 self.assertGreaterEqual((rows["q1_sharpened"] * rows["q1"] + rows["q2_sharpened"] * rows["q2"]).min(), 0.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

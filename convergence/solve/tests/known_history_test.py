@@ -1,15 +1,12 @@
-#!/usr/bin/env python3
 """known_history_test.py PROGRAM: contacts whose tractions are known from pressures, or from other loads or another path."""
 
 import itertools
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SHORT_SCENE, ProgramTest, main
+from program_run import SHORT_SCENE, ProgramTest
 from same_answer_test import RADIUS, SAME, SPHERE, on_grid
 
 FRICTION, NORMAL, ALONG = 0.1, 1000.0, (0.6, 0.8)
@@ -241,7 +238,3 @@ class KnownHistory(ProgramTest):
         self.assertAlmostEqual(twists[-1, 0] / twists[-1, 1], -1.0, delta=1e-3)
         self.assert_near(twists[2:] / twists[1], 1.0, SAME)
         self.assert_near(dissipated[2:].sum(1) / dissipated[1].sum(), 1.0, SAME)
-
-
-if __name__ == "__main__":
-    main()

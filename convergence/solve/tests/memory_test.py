@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import PROGRAM, SCENES, ProgramTest, main
+from program_run import PROGRAM, SCENES, ProgramTest
 
 # Sanitizers use extra memory.
 SANITIZED = any(name in Path(PROGRAM).read_bytes() for name in (b"__asan_init", b"__tsan_init"))
@@ -109,4 +109,4 @@ def measure():
 
 
 if __name__ == "__main__":
-    measure() if "--measure" in sys.argv else main()
+    measure()

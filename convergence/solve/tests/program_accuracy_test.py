@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """program_accuracy_test.py PROGRAM: errors reached by `slipstick solve --accuracy` and predictions of --plan."""
 
 import itertools
 import json
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SCENES, ProgramTest, main
+from program_run import SCENES, ProgramTest
 
 GRIDS = 3  # shifted grids; a number is their mean
 
@@ -136,7 +133,3 @@ class Plan(Solve):
             self.assertGreater(self.solved(scene, "--plan")["plan"]["bytes"], 0, scene)
         self.assertIsNone(self.solved("paper", "--plan --model exact")["plan"]["cells"])
         self.assertIsNone(self.solved("paper", "--plan --set solver.method=paper")["plan"]["seconds"])
-
-
-if __name__ == "__main__":
-    main()

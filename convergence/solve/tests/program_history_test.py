@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """program_history_test.py PROGRAM: output, files and exit codes of load histories."""
 
 import itertools
 import json
 import math
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SHORT_SCENE, ProgramTest, main
+from program_run import SHORT_SCENE, ProgramTest
 
 # Steel bodies on 24 x 24 cells, W = 1000 N, mu W = 100 N.
 BODIES = SHORT_SCENE.replace("moment_ratio = 0.5\n", "").replace("[32, 32]", "[24, 24]")
@@ -170,7 +167,3 @@ class History(ProgramTest):
             else:
                 self.solve(steps, "--set", change, code=2)
         self.assertGreaterEqual(written, 10)  # mixed loads have no answer without friction
-
-
-if __name__ == "__main__":
-    main()

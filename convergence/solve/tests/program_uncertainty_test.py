@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """program_uncertainty_test.py PROGRAM: `slipstick solve --uncertain` against power laws and against random draws of this test."""
 
 import bisect
 import math
 import random
-import sys
-from pathlib import Path
 from statistics import NormalDist
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SCENES, SHORT_SCENE, ProgramTest, main
+from program_run import SCENES, SHORT_SCENE, ProgramTest
 
 DRAWS = 100_000  # of this test; the program makes 16384 exact ones, or 1024
 ELLIPSE = (SHORT_SCENE.replace('"sphere"\nradius = 0.018', '"ellipsoid"\nradius_1 = 0.03\nradius_2 = 0.012')
@@ -164,7 +160,3 @@ def interpolated(places, values, place):
     i = min(max(bisect.bisect(places, place), 1), len(places) - 1)
     part = (place - places[i - 1]) / (places[i] - places[i - 1])
     return values[i - 1] + part * (values[i] - values[i - 1])
-
-
-if __name__ == "__main__":
-    main()

@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 """same_answer_test.py PROGRAM: a scene has the same answer by every way to solve it: on the part of the grid that its
 symmetry leaves and on all of it, by each sum, on several threads, with a map of friction that is 1 everywhere."""
 
 import itertools
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from program_run import SHORT_SCENE, ProgramTest, main
+from program_run import SHORT_SCENE, ProgramTest
 
 COUPLING, TRANSLATIONS = "K13, K23", "translations"
 QUADRANT, DIAGONAL = "three quarters of the contact", "one traction field"
@@ -327,7 +324,3 @@ class SameAnswer(ProgramTest):
         result, _ = self.solved(SPHERE, *settings)
         self.assertEqual(self.left_out(result), [COUPLING])  # it turns about a centre of its own
         self.assertEqual(self.solved(SPHERE, *settings, "solver.model=full")[0]["solver_bytes"], result["solver_bytes"])
-
-
-if __name__ == "__main__":
-    main()

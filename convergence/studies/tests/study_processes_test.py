@@ -12,8 +12,7 @@ import time
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from hold import Hold  # noqa: E402
+from hold import Hold
 
 PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve() / "paper.toml"
 MARKER = "SLIPSTICK_TEST_MARKER"
@@ -171,7 +170,3 @@ class Study(unittest.TestCase):
         self.write("cells = [16, 32]\n", "nowhere.toml")
         self.run_study("missing", 2)
         self.assertIn("nowhere.toml", self.text("missing.log"))
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -69,7 +69,3 @@ class Examples(unittest.TestCase):
         entry = stick_figure.stick_ratio(made_report.small_page(), self.folder)
         self.assertEqual(len(entry.figure.axes[0].lines[0].get_xdata()), 3)
         self.assertTrue(all((entry.message, entry.details, entry.alt)))
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -426,7 +426,3 @@ class Options(unittest.TestCase):
             table.write_text(text)
             self.assertIn("would overwrite", self.refused("--profile", f"file:{table}", "--write", table))
             self.assertEqual(table.read_text(), text)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

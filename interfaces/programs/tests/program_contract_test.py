@@ -310,7 +310,3 @@ def read(file):
         return file.read_text(errors="replace")
     except OSError:
         return ""
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """bad_scene_test.py PROGRAM: refused scenes; the message names file, key, value and allowed values."""
 
 import itertools
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "convergence/tests"))
-from program_run import SHORT_SCENE, ProgramTest, main
+from program_run import SHORT_SCENE, ProgramTest
 
 SCENE = """name = "paper"
 [upper]
@@ -181,7 +178,3 @@ class BadScene(ProgramTest):
                 (SHORT_SCENE, ["grid.extent=[0.0011, 0.0011]", "grid.cells=[8, 16384]"], "grid.cells = [8, 16384]",
                  "1000 times as long as wide")):
             self.refused(text, *says, settings=settings)
-
-
-if __name__ == "__main__":
-    main()
