@@ -99,9 +99,6 @@ class Accuracy(Solve):
     def test_says_what_it_replaces(self):
         self.text("paper", "--accuracy 1e-2 --model auto", says=["replaced", "grid.cells = [128, 128]", "attempt"])
 
-    def test_bad_uncertain_inputs_are_refused(self):
-        self.text("paper", "--model exact --uncertain fricton=5%", code=2, says="contact.friction")
-
 
 class Plan(Solve):
     def test_predicts_what_a_solve_takes_and_stops(self):
