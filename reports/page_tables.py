@@ -5,7 +5,6 @@ import itertools
 from markupsafe import Markup, escape
 
 import results
-from method_figures import METHODS
 from scene_figures import MOTIONS
 from tables import Table
 from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, law, percent, plain, quantity, sci, seconds, typeset

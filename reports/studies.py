@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 import style
-from results import Unavailable, column, groups, number, rows
+from results import Unavailable, groups, number, rows
 from wording import plain
 
 PRESSURES = {"solved": ("pressure solved on the same grid", style.BLUE),

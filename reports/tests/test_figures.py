@@ -3,7 +3,7 @@
 import unittest
 
 import numpy as np
-from made_report import FRICTION, PEAK, Folder, small_page, small_paper, write_data, write_fields
+from made_report import FRICTION, PEAK, Folder, small_paper, write_data, write_fields
 
 import exact_figures
 import figures

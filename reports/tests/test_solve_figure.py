@@ -4,7 +4,6 @@ import io
 import json
 import subprocess
 import sys
-import unittest
 import xml.etree.ElementTree
 from contextlib import redirect_stderr
 

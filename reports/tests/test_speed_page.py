@@ -16,7 +16,6 @@ import plane_figure
 import render
 import scaling_figure
 import speed_page
-import speed_tables
 import style
 from results import Unavailable
 
@@ -128,18 +127,6 @@ class OnThePageOfAll(unittest.TestCase):
             growth, one = render.show_speed(folder, folder)
         self.assertIn("Convolution overtakes", growth["message"])
         self.assertIn("a twist right to 10⁻² takes 1 ms", one["message"])
-
-
-class Tables(unittest.TestCase):
-    def test_least_times(self):
-        table = speed_tables.times_to_errors(plane())
-        self.assertEqual(table.head[3:], ["to 10⁻²", "to 10⁻⁴", "to 10⁻⁵"])
-        self.assertEqual(table.body[0][3:], ["1\N{NO-BREAK SPACE}ms: 16² cells, tolerance 10⁻⁴", "10\N{NO-BREAK SPACE}ms: 64² cells, tolerance 10⁻⁴", "–"])
-        self.assertEqual(table.body[-1][2:], ["exact, no grid", "0.5 ms", "0.5 ms", "0.5 ms"])
-
-    def test_laws(self):
-        first = speed_tables.laws(scaling()).body[0]
-        self.assertEqual(first[:5], [DENSE, "4.00", "3.90 to 4.10", "4.00", "N⁴"])
 
 
 class Page(unittest.TestCase):

@@ -92,7 +92,7 @@ PLANE = {
         "name": "made", "moment_ratio": 0.3, "points": [timed_point(16), timed_point(32)],
         "exact": {"seconds": {"median": 5e-6, "low": 4e-6, "high": 6e-6}, "error": 7e-14, "cells": 128},
         "time_to": [{"quantity": "traction_l2", "method": "paper", "error": error, "point": place, "seconds": seconds}
-                    for error, place, seconds in ((1e-2, 0, 0.011), (1e-3, 1, 0.012))]}]}
+                    for error, place, seconds in ((1e-2, 0, 0.011), (1e-3, 1, 0.012), (1e-4, None, None))]}]}
 
 LAW = {"name": "application/direct", "rows": [],
        "power_law": {"exponent": 3.9, "low": 3.8, "high": 4.1, "constant": 1e-3, "theory": "N^2 log N", "expected": 2.3,
@@ -106,8 +106,8 @@ class OfTimes(unittest.TestCase):
         table = speed_tables.times_to_errors(PLANE)
         self.assertEqual(beside_heads(table), [
             ("M/M<sub>lim</sub>", "0.3"), ("error of", "tractions, root mean square"), ("method", "paper"),
-            ("to 10⁻²", "11\u00a0ms: 16² cells, tolerance 10⁻⁴"), ("to 10⁻³", "12\u00a0ms: 32² cells, tolerance 10⁻⁴")])
-        self.assertEqual(table.body[1], ["0.3", "all", "exact, no grid", "0.005 ms", "0.005 ms"])
+            ("to 10⁻²", "11\u00a0ms: 16² cells, tolerance 10⁻⁴"), ("to 10⁻³", "12\u00a0ms: 32² cells, tolerance 10⁻⁴"), ("to 10⁻⁴", "–")])
+        self.assertEqual(table.body[1], ["0.3", "all", "exact, no grid", "0.005 ms", "0.005 ms", "0.005 ms"])
 
     def test_laws(self):
         self.assertEqual(beside_heads(speed_tables.laws({"families": [LAW]})), [
