@@ -4,38 +4,18 @@ where."""
 import json
 from pathlib import Path
 
-from program_run import ProgramTest
+from program_run import ProgramTest, made_benchmarks
 
-# Behaves as Google Benchmark's programs do, with benchmarks that all take so long, and notes each of its runs.
-MADE = r"""#!/bin/sh
-for word in "$@"; do
-  case "$word" in
-    --benchmark_list_tests) printf '@LIST@'; exit 0;;
-    --benchmark_filter=*) filter="${word#*=}";;
-    --benchmark_out=*) out="${word#*=}";;
-  esac
-done
-echo "@LABEL@ $filter" >> '@FOLDER@/log'
-cat > "$out" <<END
-{"context": {"num_cpus": 2, "build_type": "release"}, "benchmarks": [
- {"name": "x", "run_name": "x", "run_type": "iteration", "real_time": @MS@, "cpu_time": @MS@, "time_unit": "ms"}]}
-END
-exit @EXIT@
-"""
 
 
 class ProgramBench(ProgramTest):
     def made_program(self, label, names, milliseconds=1.0, code=0):
-        text = MADE.replace("@LIST@", names).replace("@LABEL@", label).replace("@MS@", str(milliseconds))
-        text = text.replace("@EXIT@", str(code))
-        self.write(label, text.replace("@FOLDER@", str(self.folder)))
-        Path(label).chmod(0o700)
-        return str(self.folder / label)
+        return str(made_benchmarks(self.folder / label, names, milliseconds, code))
 
     def against(self, factor, *options, code=0, says=()):
         """Two builds; the new one takes this many times as long."""
-        self.run_program("bench", "--filter", "f", "--against", self.made_program("base", r"f/cells:8\n"), "--program",
-                         self.made_program("now", r"f/cells:8\n", factor), "--output", "out", *options, code=code,
+        self.run_program("bench", "--filter", "f", "--against", self.made_program("base", "f/cells:8\n"), "--program",
+                         self.made_program("now", "f/cells:8\n", factor), "--output", "out", *options, code=code,
                          says=says)
 
     def log(self):
@@ -54,20 +34,20 @@ class ProgramBench(ProgramTest):
         self.assertEqual(sum(line.startswith("now ") for line in self.log()), 30)
 
     def test_reports_what_is_in_one_build_only(self):
-        self.run_program("bench", "--filter", "f", "--against", self.made_program("base", r"common\nold\n"), "--program",
-                         self.made_program("now", r"new\ncommon\n", 1.01), "--output", "out", "--rounds", "10", code=2,
+        self.run_program("bench", "--filter", "f", "--against", self.made_program("base", "common\nold\n"), "--program",
+                         self.made_program("now", "new\ncommon\n", 1.01), "--output", "out", "--rounds", "10", code=2,
                          says=("1 only in base", "1 only in new", "1 same"))
         found = json.loads(Path("out/comparison.json").read_text())
         self.assertEqual([(row["name"], row["finding"]) for row in found["benchmarks"]],
                          [("common", "same"), ("old", "only in base"), ("new", "only in new")])
 
     def test_a_name_may_look_like_a_regular_expression(self):
-        program = self.made_program("both", r"f<2.5>(x)|g\n")
+        program = self.made_program("both", "f<2.5>(x)|g\n")
         self.run_program("bench", "--against", program, "--program", program, "--output", "out", "--rounds", "2", code=2)
         self.assertEqual(set(self.log()), {r"both ^(f<2\.5>\(x\)\|g)$"})
 
     def test_says_which_benchmark_failed(self):
-        program = self.made_program("broken", r"f\n", code=3)
+        program = self.made_program("broken", "f\n", code=3)
         self.run_program("bench", "--against", program, "--program", program, "--output", "out", code=2,
                          says="benchmark f ended with code 3")
 
@@ -82,7 +62,7 @@ class ProgramBench(ProgramTest):
         self.against(1.5, "--rounds", "3", code=2, says="too few")
 
     def test_compares_the_second_of_two_methods_with_the_first(self):
-        program = self.made_program("both", r"f\ng\n")
+        program = self.made_program("both", "f\ng\n")
         self.run_program("bench", "--pair", "f", "g", "--program", program, "--output", "out", "--rounds", "2", code=2,
                          says=("g against f, ", "g over f"))
         self.assertLessEqual({"both ^(f)$", "both ^(g)$"}, set(Path("log").read_text().splitlines()))

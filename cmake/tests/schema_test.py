@@ -11,6 +11,7 @@ from pathlib import Path
 
 import jsonschema
 
+from program_run import made_benchmarks
 from schemas import ROOT, SCHEMAS, parse, problem, unexplained, validator
 
 PROGRAM = Path(sys.argv[1]).resolve()
@@ -33,33 +34,14 @@ quantity = "{{}}"
 basis = "made up"
 {{}}
 """
-# A program as Google Benchmark makes them; each of its benchmarks takes MS milliseconds.
-BENCHMARKS = """#!/bin/sh
-for word in "$@"; do
-  case "$word" in
-    --benchmark_list_tests*)
-      for n in CELLS; do echo "application/direct/cells:$n"; echo "application/dcfft/cells:$n"; done
-      exit 0;;
-    --benchmark_filter=*) name="$(printf %s "${word#*=}" | tr -cd 'a-z0-9/:')";;
-    --benchmark_out=*) out="${word#*=}";;
-  esac
-done
-cat > "$out" <<END
-{"context": {"num_cpus": 2, "build_type": "release"}, "benchmarks": [
- {"name": "$name", "run_name": "$name", "run_type": "iteration", "real_time": MS, "cpu_time": MS, "time_unit": "ms"}]}
-END
-"""
 
 
 class Results(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = Path(temporary.name)
 
     def file(self, name, text):
         path = self.folder / name
@@ -226,9 +208,8 @@ class Results(unittest.TestCase):
         self.run_and_check("bench", SCENES / "ellipse.toml", "--quick", "--output", self.folder / "costs", schema="costs")
 
     def made_benchmarks(self, milliseconds=1.0, cells="8"):
-        program = self.file(f"benchmarks-{milliseconds}", BENCHMARKS.replace("MS", str(milliseconds)).replace("CELLS", cells))
-        program.chmod(0o700)
-        return program
+        names = "".join(f"application/direct/cells:{n}\napplication/dcfft/cells:{n}\n" for n in cells.split())
+        return made_benchmarks(self.folder / f"benchmarks-{milliseconds}", names, milliseconds)
 
     @unittest.skipUnless(PACKAGE.exists(), "without the Python package")
     def test_comparison(self):

@@ -29,6 +29,34 @@ moment_ratio = 0.5
 cells = [32, 32]
 """
 
+# Behaves as Google Benchmark's programs do, with benchmarks that all take so long, and notes each of its runs.
+BENCHMARKS = r"""#!/bin/sh
+for word in "$@"; do
+  case "$word" in
+    --benchmark_list_tests*) printf '%s' '@NAMES@'; exit 0;;
+    --benchmark_filter=*) filter="${word#*=}";;
+    --benchmark_out=*) out="${word#*=}";;
+  esac
+done
+echo "@LABEL@ $filter" >> '@FOLDER@/log'
+name="$(printf %s "$filter" | tr -cd 'a-z0-9/:')"
+cat > "$out" <<END
+{"context": {"num_cpus": 2, "build_type": "release"}, "benchmarks": [
+ {"name": "$name", "run_name": "$name", "run_type": "iteration", "real_time": @MS@, "cpu_time": @MS@, "time_unit": "ms"}]}
+END
+exit @EXIT@
+"""
+
+
+def made_benchmarks(file, names, milliseconds=1.0, code=0):
+    """Writes such a program with benchmarks of these names, one a line; returns its file."""
+    text = BENCHMARKS
+    for key, value in (("NAMES", names), ("LABEL", file.name), ("FOLDER", file.parent), ("MS", milliseconds), ("EXIT", code)):
+        text = text.replace(f"@{key}@", str(value))
+    file.write_text(text)
+    file.chmod(0o700)
+    return file
+
 
 class ProgramTest(unittest.TestCase):
     maxDiff = None
