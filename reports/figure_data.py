@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from html import escape
 
 import numpy as np
 from matplotlib.container import BarContainer
@@ -42,7 +43,7 @@ def with_words(figure, svg):
 
 
 def _titled(use, words):
-    return f"{use[0][:-2]}><title>{_escaped(words)}</title></use>" if words else use[0]
+    return f"{use[0][:-2]}><title>{escape(words, quote=False)}</title></use>" if words else use[0]
 
 
 def _place(x, y):
@@ -86,7 +87,3 @@ def plain_words(text):
     text = re.sub(r"\\mathrm\{(\w+)\}", r"\1", text)
     text = re.sub(r"\\(\w+)", lambda name: {"phi": "φ", "mu": "μ"}.get(name[1], name[1]), text)
     return " ".join(re.sub(r"[${}]", "", text).split())
-
-
-def _escaped(text):
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

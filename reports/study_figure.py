@@ -48,11 +48,6 @@ def has_exact_answer(series, quantity):
     return all(one.order(quantity).get("basis") != "extrapolated" for one in series)
 
 
-def error_title(series, quantity):
-    """The quantity, and the reference of its error if that is not the exact answer."""
-    return quantity_words(quantity) + ("" if has_exact_answer(series, quantity) else ", from the extrapolated value")
-
-
 def draw_errors(axis, series, quantity):
     """|error| against cell size; meshes that the fit leaves out are pale."""
     handles = []
@@ -71,7 +66,8 @@ def draw_errors(axis, series, quantity):
             axis.plot(ends, abs(order["constant"]) * ends ** order["value"], color=look["color"], linewidth=0.9,
                       linestyle="--" if look.get("markerfacecolor") == "none" else "-")
         handles.append(Line2D([], [], label=order_words(order), **look))
-    axis.set(xscale="log", yscale="log", title=error_title(series, quantity))
+    reference = "" if has_exact_answer(series, quantity) else ", from the extrapolated value"
+    axis.set(xscale="log", yscale="log", title=quantity_words(quantity) + reference)
     axis.invert_xaxis()
     return handles
 
@@ -296,7 +292,7 @@ def message(series, quantities):
                              *(f"{count} {words}" for words, count in others)])
         sentences.append(f"{verdicts.total()} orders: {counted}.")
         sentences += dominance(study_result.budget_series(series, quantities[0][1]), *quantities[0])
-    stalled = [one for one in series if one.tolerances and _best(one, "certificate.gap") > 10 * _tightest(one)]
+    stalled = [one for one in series if one.tolerances and _best(one, "certificate.gap") > 10 * _best(one, "requested")]
     for one in stalled:
         sentences.append(f"With {one.label}, the law of friction holds to a gap of {sci(_best(one, 'certificate.gap'))} at best, "
                          f"though its own test reads {sci(_best(one, 'change'))}.")
@@ -307,10 +303,6 @@ def message(series, quantities):
 
 def _best(series, path):
     return np.nanmin(np.abs(numbers(series.tolerances, path)))
-
-
-def _tightest(series):
-    return np.nanmin(numbers(series.tolerances, "requested"))
 
 
 def dominance(series, words, path):
@@ -355,14 +347,11 @@ def details(series, quantities):
     return " ".join(sentences)
 
 
-def head_lines(study, drawn):
-    return (textwrap.wrap(style.verbatim(drawn.message), int(11.5 * style.WIDTH)),
-            textwrap.wrap(style.verbatim(f"{text(study, 'name')}. {drawn.details}"), int(15 * style.WIDTH)))
-
-
 def standalone(study):
     """With its message and details above."""
-    bold, plain = head_lines(study, draw(study))
+    drawn = draw(study)
+    bold = textwrap.wrap(style.verbatim(drawn.message), int(11.5 * style.WIDTH))
+    plain = textwrap.wrap(style.verbatim(f"{text(study, 'name')}. {drawn.details}"), int(15 * style.WIDTH))
     head = HEAD + LINE * (len(bold) + len(plain))
     figure = draw(study, head).figure
     width, height = figure.get_size_inches()

@@ -130,7 +130,8 @@ class _Fitter:
 
     def on_grid(self) -> tuple[float, Array]:
         """The least cost of combinations of parameters that differ from the middle ones by a few steps of a factor."""
-        grid = np.array(self.family.middle) * np.exp(0.4 * _steps(len(self.family.middle)))
+        steps = np.array(list(itertools.product(range(-3, 4), repeat=len(self.family.middle))), float)
+        grid = np.array(self.family.middle) * np.exp(0.4 * steps)
         cost = self.at(self.trials(grid)).cost
         return float(cost.min()), grid[[int(cost.argmin())]]
 
@@ -180,10 +181,6 @@ class _Fitter:
             square[range(fixed, len(x)), range(fixed, len(x))] += stiff
             right[fixed:] += stiff * x[fixed:]
         return square, right, float(error @ error) + len(error) * (self.law_error * np.ptp(self.path.moment))**2
-
-
-def _steps(count: int) -> Array:
-    return np.array(list(itertools.product(range(-3, 4), repeat=count)), float)
 
 
 def _that_count(error: Array) -> Array:
