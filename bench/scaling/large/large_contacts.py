@@ -155,11 +155,6 @@ def sizes_text(sizes):
     return ", ".join(map(str, sizes))
 
 
-def law_rows(model):
-    return [[law.name, sizes_text(law.fitted), sizes_text(law.left_out), f"{100.0 * law.error:.1f} %"]
-            for law in model.laws()]
-
-
 def time_and_memory(model):
     rows = []
     for n in (1024, 4096, 8192, 16384, 32768, 65536):
@@ -171,14 +166,10 @@ def time_and_memory(model):
     return rows
 
 
-def nodes_needed(model, n):
-    return max(1, 2 ** math.ceil(math.log2(model.memory(n) / NODE["memory"])))
-
-
 def strong(model, n):
     """On twice as many nodes each time, from as many as hold the contact."""
     rows = []
-    nodes = first = nodes_needed(model, n)
+    nodes = first = max(1, 2 ** math.ceil(math.log2(model.memory(n) / NODE["memory"])))
     while nodes <= MOST_NODES:
         machine = Machine("", nodes, **NODE)
         seconds = model.solve_seconds(n, machine)
@@ -214,7 +205,8 @@ def tables(counts):
             [[nodes, duration(s), f"{100.0 * e:.0f} %", f"{100.0 * part_sent:.0f} %"] for nodes, s, e, part_sent in rows]))
     first = weak(model)[0]
     return {
-        "laws": table(["law", "fitted to", "left out", "largest error there"], law_rows(model)),
+        "laws": table(["law", "fitted to", "left out", "largest error there"], [
+            [law.name, sizes_text(law.fitted), sizes_text(law.left_out), f"{100.0 * law.error:.1f} %"] for law in model.laws()]),
         "transposes": (f"{sum(row['ranks'] > 1 for row in counts['transposes'])} transposes were counted: bytes are right to "
                        f"{100.0 * size_error:.1g} % and messages to {100.0 * message_error:.1g} %; the most that was sent is "
                        f"{part:.2f} of 64 N²."),
