@@ -53,13 +53,6 @@ def violations(root, arrows):
         yield f"arrows.txt: nothing in {folder}"
 
 
-def main():
-    root = pathlib.Path(sys.argv[1])
-    arrows = read_arrows(pathlib.Path(__file__).with_name("arrows.txt"))
-    found = list(violations(root, arrows))
-    print("\n".join(found) or "every include follows an arrow")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    found = list(violations(pathlib.Path(sys.argv[1]), read_arrows(pathlib.Path(__file__).with_name("arrows.txt"))))
+    sys.exit("\n".join(found) or 0)

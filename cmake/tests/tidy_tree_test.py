@@ -63,6 +63,4 @@ def violations(root):
 
 
 if __name__ == "__main__":
-    broken = list(violations(pathlib.Path(sys.argv[1])))
-    print("\n".join(broken) or "the tree is tidy")
-    sys.exit(bool(broken))
+    sys.exit("\n".join(violations(pathlib.Path(sys.argv[1]))) or 0)
