@@ -21,6 +21,18 @@ PATIENCE = 120  # seconds; a killed process ends sooner on any machine
 SCENE = Path(__file__).parents[1] / "scenes" / "paper.toml"
 
 
+def processes_of(folder):
+    """The running processes with this folder as their MARKER; /proc shows no environment of an ended one."""
+    found, mark = [], f"{MARKER}={folder}".encode() + b"\0"
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and mark in (entry / "environ").read_bytes():
+                found.append(int(entry.name))
+        except OSError:  # it has ended, or belongs to another user
+            pass
+    return found
+
+
 def without_times(tree):
     if isinstance(tree, dict):
         return {key: without_times(value) for key, value in tree.items() if key.partition(".")[0] not in TIMES}
@@ -63,15 +75,7 @@ class Command:
         return subprocess.Popen(self.words, env=environment, stdout=self.log, stderr=self.log, start_new_session=True)
 
     def processes(self):
-        """The running processes of the command; /proc shows no environment of an ended one."""
-        found, mark = [], f"{MARKER}={self.folder}".encode() + b"\0"
-        for entry in Path("/proc").iterdir():
-            try:
-                if entry.name.isdigit() and mark in (entry / "environ").read_bytes():
-                    found.append(int(entry.name))
-            except OSError:  # it has ended, or belongs to another user
-                pass
-        return found
+        return processes_of(self.folder)
 
     def files(self):
         return [path for path in self.folder.rglob("*") if path.is_file()]

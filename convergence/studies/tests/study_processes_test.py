@@ -8,27 +8,16 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
 from hold import Hold
+from kills_test import MARKER, comes_true, processes_of
 
 PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve() / "paper.toml"
-MARKER = "SLIPSTICK_TEST_MARKER"
-PATIENCE = 120  # seconds, longer than it takes on any machine
 ON_LINUX = unittest.skipUnless(sys.platform == "linux", "only Linux shows which processes are the study's")
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it, and so would a study
-
-
-def comes_true(condition, pause=0.01):
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        if time.monotonic() > end:
-            return False
-        time.sleep(pause)
-    return True
 
 
 class Study(unittest.TestCase):
@@ -66,15 +55,8 @@ class Study(unittest.TestCase):
         return sorted((self.folder / "points").glob("*.json"))
 
     def processes(self):
-        """The running processes of the study and its workers; zombies have no command line."""
-        found = []
-        for folder in Path("/proc").glob("[0-9]*"):
-            try:
-                if f"{MARKER}={self.folder}\0".encode() in (folder / "environ").read_bytes():
-                    found.append(int(folder.name))
-            except OSError:
-                pass
-        return found
+        """The running processes of the study and its workers."""
+        return processes_of(self.folder)
 
     def test_goes_on_after_an_interrupt(self):
         """The finished results are complete, and the same command continues to the same result."""
