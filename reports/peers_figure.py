@@ -19,18 +19,15 @@ MIN_SHOWN = 1e-6  # part of the allowed error; smaller values are drawn there
 
 def peers(report, data_dir):
     programs = rows(report, "peers")
+    over = [np.abs(column(rows(each, "judged"), "value")) / column(rows(each, "judged"), "allowed") for each in programs]
     figure, axis = style.panels(1, 1, 3.6)
     names = [QUANTITIES.get(text(row, "quantity"), text(row, "quantity")) for row in rows(programs[0], "judged")]
-    for program, look in zip(programs, LOOKS):
-        judged = rows(program, "judged")
-        over = np.abs(column(judged, "value")) / column(judged, "allowed")
-        axis.plot(np.maximum(over, MIN_SHOWN), np.arange(len(judged)), linestyle="", label=f"{text(program, 'program')}: "
+    for program, errors, look in zip(programs, over, LOOKS):
+        axis.plot(np.maximum(errors, MIN_SHOWN), np.arange(len(errors)), linestyle="", label=f"{text(program, 'program')}: "
                   f"{text(program, 'verdict')}", **look)
     axis.axvspan(1, axis.get_xlim()[1] * 1e3, color=style.VERMILION, alpha=0.08, linewidth=0)
     axis.axvline(1, color=style.BLACK, linewidth=0.8)
-    most = max(np.nanmax(np.abs(column(rows(each, "judged"), "value")) / column(rows(each, "judged"), "allowed"))
-               for each in programs)
-    axis.set(xscale="log", xlim=(0.6 * MIN_SHOWN, max(30.0, 3 * most)), yticks=range(len(names)), yticklabels=names,
+    axis.set(xscale="log", xlim=(0.6 * MIN_SHOWN, max(30.0, 3 * max(map(np.nanmax, over)))), yticks=range(len(names)), yticklabels=names,
              xlabel="error over what the mesh allows   (wrong right of the line →)")
     axis.invert_yaxis()
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], len(programs))
@@ -46,5 +43,4 @@ def peers(report, data_dir):
         figure, [(f"{text(each, 'program')}: {words}", sci(abs(found))) for each in programs
                  for words, found in (("twist error", value(each, "twist_error")),
                                       ("traction error, L2", value(each, "traction_error.l2")),
-                                      ("gap / energy", value(each, "certificate.gap"))) if found is not None],
-        [])
+                                      ("gap / energy", value(each, "certificate.gap"))) if found is not None])

@@ -9,13 +9,11 @@ import script
 
 script.require("numpy", "matplotlib", "jinja2", "h5py")
 
-import jinja2  # noqa: E402
-
 import plane_figure  # noqa: E402
 import results  # noqa: E402
 import scaling_figure  # noqa: E402
 import speed_tables  # noqa: E402
-from render import HERE, draw_entry  # noqa: E402
+from render import draw_entry, environment, tabulate  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 from wording import plain  # noqa: E402
 
@@ -31,21 +29,12 @@ def draw_all(scaling, plane, folder):
     return [draw_entry(NAME.format(k), title, draw, folder) for k, (title, draw) in enumerate(drawings, 1)]
 
 
-def tabulate(make, *arguments):
-    try:
-        return {"table": make(*arguments)}
-    except results.Unavailable as reason:
-        return {"unavailable": str(reason)}
-
-
 def render(data, output):
     """Writes output/index.html and output/figures/ from data/scaling.json and data/plane.json."""
     scaling, plane = (results.load(data / f"{name}.json") for name in ("scaling", "plane"))
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True)
-    page = environment.get_template("speed.html.j2").render(
+    page = environment().get_template("speed.html.j2").render(
         figures=draw_all(scaling, plane, folder),
         times=tabulate(speed_tables.times_to_errors, plane),
         laws=tabulate(speed_tables.laws, scaling),
