@@ -336,11 +336,6 @@ class Options(unittest.TestCase):
         self.assertIn("ellipsoid", self.refused(SCENES / "ellipse.toml"))
         self.refused(SCENES / "paper.toml", "--profile", "cone")
 
-    def test_gives_as_many_elements_as_asked_for(self):
-        for profile, counts in (("hertz", (1, 2, 13, 152, 153, 199, 200)), ("flat_punch", (3, 200)), ("power:3", (7,))):
-            for count in counts:
-                self.assertEqual(len(ParallelElements(Curve(profile), 0, count).each), count, profile)
-
     @unittest.skipUnless(COMPILER, "no C compiler")
     def test_two_headers_in_one_program(self):
         with tempfile.TemporaryDirectory() as folder:
