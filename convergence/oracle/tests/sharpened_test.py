@@ -2,16 +2,10 @@
 law and load; they keep to the friction's bound; edges that are no root on these cells are left as they are."""
 
 import json
-import pathlib
 import subprocess
-import sys
-import tempfile
-import unittest
 
 import numpy as np
-
-PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
+from program_run import PROGRAM, SCENES, ProgramTest
 
 
 def solve(scene, *settings, fields=None):
@@ -27,7 +21,7 @@ def errors(scene, *settings):
     return error["l2"], error["sharpened"]["l2"]
 
 
-class Sharpened(unittest.TestCase):
+class Sharpened(ProgramTest):
     def test_is_nearer_under_every_load_and_law(self):
         for case in (("paper-0.5", "grid.cells=[256,256]"), ("paper", "grid.cells=[256,256]"), ("rounded_punch",), ("mindlin",),
                      ("rubber_lens",), ("growing_load",), ("fretting_torsion",), ("coated_sphere", "grid.cells=[256,256]"),
@@ -64,15 +58,13 @@ class Sharpened(unittest.TestCase):
         self.assertAlmostEqual(sharp / raw, 1.0, places=12)
 
     def test_keeps_to_the_bound_and_to_the_direction(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for scene, bound in (("paper", lambda p: 0.1 * p), ("capped_friction", lambda p: np.minimum(0.1 * p, 1e8)),
-                                 ("rubber_lens", lambda p: np.where(p > 0, 0.3e6, 0.0))):
-                file = pathlib.Path(folder) / "fields.csv"
-                solve(scene, fields=file)
-                rows = np.genfromtxt(file, delimiter=",", names=True)
-                sharp = np.hypot(rows["q1_sharpened"], rows["q2_sharpened"])
-                largest = sharp.max()
-                self.assertLessEqual((sharp - bound(rows["pressure_sharpened"])).max(), 1e-9 * largest, scene)
-                across = rows["q1_sharpened"] * rows["q2"] - rows["q2_sharpened"] * rows["q1"]
-                self.assertLessEqual(np.abs(across).max(), 1e-9 * largest**2, scene)
-                self.assertGreaterEqual((rows["q1_sharpened"] * rows["q1"] + rows["q2_sharpened"] * rows["q2"]).min(), 0.0)
+        for scene, bound in (("paper", lambda p: 0.1 * p), ("capped_friction", lambda p: np.minimum(0.1 * p, 1e8)),
+                             ("rubber_lens", lambda p: np.where(p > 0, 0.3e6, 0.0))):
+            solve(scene, fields="fields.csv")
+            rows = np.genfromtxt("fields.csv", delimiter=",", names=True)
+            sharp = np.hypot(rows["q1_sharpened"], rows["q2_sharpened"])
+            largest = sharp.max()
+            self.assertLessEqual((sharp - bound(rows["pressure_sharpened"])).max(), 1e-9 * largest, scene)
+            across = rows["q1_sharpened"] * rows["q2"] - rows["q2_sharpened"] * rows["q1"]
+            self.assertLessEqual(np.abs(across).max(), 1e-9 * largest**2, scene)
+            self.assertGreaterEqual((rows["q1_sharpened"] * rows["q1"] + rows["q2_sharpened"] * rows["q2"]).min(), 0.0)

@@ -1,9 +1,10 @@
 """program_uncertainty_test.py PROGRAM: `slipstick solve --uncertain` against power laws and against random draws of this test."""
 
-import bisect
 import math
 import random
 from statistics import NormalDist
+
+import numpy as np
 
 from program_run import SCENES, SHORT_SCENE, ProgramTest
 
@@ -112,8 +113,8 @@ class Draws(Uncertain):
                 friction, load = (1 + part * chance.gauss(0, 1) for part in parts.values())
                 ratio = moment / (friction * load ** (4 / 3)) if friction > 0 else 1
                 if ratio < ratios[-1]:
-                    drawn.append(friction * load ** (1 / 3) * interpolated(ratios, twists, ratio))
-            scale = result["twist_angle"] / interpolated(ratios, twists, moment)
+                    drawn.append(friction * load ** (1 / 3) * np.interp(ratio, ratios, twists))
+            scale = result["twist_angle"] / np.interp(moment, ratios, twists)
             self.holds(result["uncertainty"], [scale * twist for twist in sorted(drawn)])
 
     def holds(self, found, drawn):
@@ -154,9 +155,3 @@ class Draws(Uncertain):
         self.assertAlmostEqual(draws["failed"], normal.cdf(-2), delta=2 / 16384)
         self.assertAlmostEqual(draws["sliding"], normal.cdf(-0.8) - normal.cdf(-2), delta=4 / 16384)
         self.assertIn("contact.friction = -", draws["failed_reason"])
-
-
-def interpolated(places, values, place):
-    i = min(max(bisect.bisect(places, place), 1), len(places) - 1)
-    part = (place - places[i - 1]) / (places[i] - places[i - 1])
-    return values[i - 1] + part * (values[i] - values[i - 1])
