@@ -41,14 +41,23 @@ def _named(names: dict[str, Values]) -> tuple[int, npt.ArrayLike]:
     return _GIVEN.index(name), values
 
 
+def _called(name: str, profile: str, before: Sequence[Any], array: Any, after: Sequence[Any], results: Any) -> Any:
+    """The results of slipstick_NAME for an array, between other arguments."""
+    _library.checked(_library.function(name)(_library.encoded(profile), *before, array.size, _library.address(array), *after,
+                                             _library.address(results)))
+    return results
+
+
+def _numbers(name: str, profile: str, before: Sequence[Any], values: npt.ArrayLike, *after: Any) -> Any:
+    """A number for each value."""
+    array = _library.doubles(values)
+    results = _called(name, profile, before, array, after, np.empty_like(array))
+    return results if results.ndim else float(results)
+
+
 def _find(wanted: str, profile: str, names: dict[str, Values]) -> Any:
     given, values = _named(names)
-    array = _library.doubles(values)
-    results = np.empty_like(array)
-    _library.checked(_library.function("exact")(
-        _library.encoded(profile), given, array.size, _library.address(array), _WANTED.index(wanted),
-        _library.address(results)))
-    return results if results.ndim else float(results)
+    return _numbers("exact", profile, [given], values, _WANTED.index(wanted))
 
 
 def twist(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -123,11 +132,7 @@ def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, s
     """
     given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
                             "stick_complement": stick_complement, "twist": twist})
-    array = _library.doubles(values)
-    results = np.empty_like(array)
-    _library.checked(_library.function("exact_energy_lost")(
-        _library.encoded(profile), given, array.size, _library.address(array), relative_error, _library.address(results)))
-    return results if results.ndim else float(results)
+    return _numbers("exact_energy_lost", profile, [given], values, relative_error)
 
 
 def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -142,10 +147,7 @@ def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_
     given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
                             "stick_complement": stick_complement, "twist": twist})
     array = _library.doubles(values)
-    found = np.empty(array.shape, _library.STATE)
-    _library.checked(_library.function("exact_states")(
-        _library.encoded(profile), given, array.size, _library.address(array), _library.address(found)))
-    return found.view(np.recarray)
+    return _called("exact_states", profile, [given], array, [], np.empty(array.shape, _library.STATE)).view(np.recarray)
 
 
 def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment_deficit: float | None = None,
@@ -159,22 +161,13 @@ def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment
     >>> bool(traction(0.8, 0.9) == pressure(0.8) and traction(0.8, history=[0.9, -0.9]) == -pressure(0.8))
     True
     """
-    radii = _library.doubles(radius)
-    results = np.empty_like(radii)
     names: dict[str, Values] = {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
                                 "stick_ratio": stick_ratio, "stick_complement": stick_complement, "twist": twist}
     if history is not None and all(value is None for value in names.values()):
         moments = _library.doubles(history).ravel()
-        status = _library.function("exact_history_traction")(
-            _library.encoded(profile), moments.size, _library.address(moments), radii.size, _library.address(radii),
-            _library.address(results))
-    else:
-        given, value = _named({**names, "history": history})
-        status = _library.function("exact_traction")(
-            _library.encoded(profile), given, float(np.asarray(value)), radii.size, _library.address(radii),
-            _library.address(results))
-    _library.checked(status)
-    return results if results.ndim else float(results)
+        return _numbers("exact_history_traction", profile, [moments.size, _library.address(moments)], radius)
+    given, value = _named({**names, "history": history})
+    return _numbers("exact_traction", profile, [given, float(np.asarray(value))], radius)
 
 
 def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
@@ -183,11 +176,7 @@ def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
     >>> pressure([0.0, 0.6, 1.0])
     array([1. , 0.8, 0. ])
     """
-    radii = _library.doubles(radius)
-    results = np.empty_like(radii)
-    _library.checked(_library.function("exact_pressure")(
-        _library.encoded(profile), radii.size, _library.address(radii), _library.address(results)))
-    return results if results.ndim else float(results)
+    return _numbers("exact_pressure", profile, [], radius)
 
 
 def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray:
@@ -200,10 +189,7 @@ def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray
     True
     """
     moments = _library.doubles(moment_ratios).ravel()
-    found = np.empty(moments.shape, _library.CYCLE_STATE)
-    _library.checked(_library.function("exact_history")(
-        _library.encoded(profile), moments.size, _library.address(moments), _library.address(found)))
-    return found.view(np.recarray)
+    return _called("exact_history", profile, [], moments, [], np.empty(moments.shape, _library.CYCLE_STATE)).view(np.recarray)
 
 
 def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: str = "hertz") -> np.recarray:
@@ -217,9 +203,7 @@ def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: s
     if points < 1:
         raise InputError(f"points_per_branch = {points}; allowed: 1 or more")
     found = np.empty(turning.size * points + 1, _library.CYCLE_STATE)
-    _library.checked(_library.function("exact_curve")(
-        _library.encoded(profile), turning.size, _library.address(turning), points, _library.address(found)))
-    return found.view(np.recarray)
+    return _called("exact_curve", profile, [], turning, [points], found).view(np.recarray)
 
 
 @dataclass(frozen=True)
