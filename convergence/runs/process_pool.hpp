@@ -20,8 +20,8 @@ struct ProcessPoolOptions {
   /// Called at least once a second, and after each signal: whether to stop. Null: never.
   bool (*interrupted)() = nullptr;
   AllowedPrograms programs = {};  ///< that scenes may name
-  /// Gets the runs without a result, of which none is solved: their records are refused. Null: they are
-  /// solved.
+  /// Null: runs without a result are solved. Otherwise they are added here, none is solved, and their records
+  /// are refused.
   std::vector<PreparedRun>* lacking = nullptr;
 };
 

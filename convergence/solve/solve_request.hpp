@@ -32,15 +32,15 @@ struct CheckpointFile {
 /// A scene, and how to solve it: exactly where its model is the exact one, else on a grid.
 struct SolveRequest {
   SceneFile source;
-  solver::Scene scene;  ///< that of the source
+  solver::Scene scene;  ///< read from the source
   std::optional<AccuracyTarget> target =
-      {};             ///< cells and tolerance are chosen for it; none: those of the scene
+      {};             ///< cells and tolerance are chosen for it; none: the scene has them
   bool plan = false;  ///< only predicts memory and time, of one of planned_ranks
   int planned_ranks = 1;
-  std::vector<UncertainInput> uncertain = {};  ///< of which the answer's uncertainty is computed
+  std::vector<UncertainInput> uncertain = {};  ///< they give the answer its uncertainty
   AnswerFiles files = {};
   CheckpointFile checkpoint = {};
-  solver::Ranks ranks = {};  ///< that share the solve
+  solver::Ranks ranks = {};  ///< they share the solve
 };
 
 /// Writes the text for a person, fills the result and returns the exit code: 0 converged, 1 not. Throws

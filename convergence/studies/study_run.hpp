@@ -45,8 +45,8 @@ RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance);
 
 /// 1. Makes the series and their meshes; 2. solves them, again to tighter tolerances where the iteration
 /// error is a tenth of the discretisation error; 3. fits and judges each quantity of each series; 4. solves
-/// to the tolerances that the study varies. A pool that lists runs gets those of 2 and 4, and nothing is
-/// judged unless all have results. Throws as make_series().
+/// to the tolerances that the study varies. A pool that lists runs gets the runs of 2 and 4, and nothing
+/// is judged unless all have results. Throws as make_series().
 StudyResult run_study(const Study& study, const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

@@ -82,8 +82,8 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
-/// Calls the work with the profile of this name. That of the last call is kept, since many calls in a row
-/// have the same one; a file may change in between.
+/// Calls the work with the profile of this name. The profile of the last call is kept, since many calls in a
+/// row name the same one; a file is read again, since it may have changed.
 template <class Work>
 int with_profile(const char* name, const Work& work) noexcept {
   return guarded([&] {

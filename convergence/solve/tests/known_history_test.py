@@ -121,8 +121,8 @@ class KnownHistory(ProgramTest):
         return step, fields["pressure"], *np.meshgrid(*along, indexing="ij")
 
     def test_contacts_of_several_bodies(self):
-        """Curvatures add up. Of two equal spheres each has half the load and its contact radius a; the other one's pressure
-        sinks the surface by W/(2 pi E* D) and tilts it by W/(2 pi E* D^2), next terms (a/D)^2."""
+        """Curvatures add up. Each of two equal spheres has half the load and its contact radius a; the pressure of the other
+        lowers the surface by W/(2 pi E* D) and tilts it by W/(2 pi E* D^2), next terms (a/D)^2."""
         extent = "grid.extent=[1e-3, 1e-3]"
         spheres = 'shape = [{shape = "sphere", radius = 0.018%s}, {shape = "sphere", radius = 0.018%s}]\n'
         _, expected, *_ = self.pressed('shape = "sphere"\nradius = 0.009\n', extent)
@@ -201,8 +201,8 @@ class KnownHistory(ProgramTest):
             self.assertLessEqual(abs(steps[1]["dissipated"]), SAME * steps[0]["dissipated"])
 
     def test_by_another_way_to_the_same_loads(self):
-        """On the part of the grid that each step needs, and on all of it; by imposed motions, which count from the first step,
-        in place of the loads."""
+        """Steps on the part of the grid that each needs equal steps on the whole grid, and imposed motions, which count from
+        the first step, equal the loads that they cause."""
         loads = [{"moment_ratio": ratio, "normal": NORMAL * load}
                  for ratio, load in zip((0.5, 0.3, -0.6, 0.2), (0.5, 1, 0.4, 0.8))]
         part = self.history(SHORT_SCENE, loads, "grid.cells=[28, 28]")

@@ -20,7 +20,7 @@ MAP = 'shape = "height_map"\nfile = "heights.csv"\n'
 TIGHT = "solver.tolerance=1e-12"
 SAME = 1e-9  # two answers of one discrete problem, each with a gap below 1e-12
 SOFT = "lower.young_modulus=70e9"
-# A surface, settings, and what is left out: a quadrant, half of it, the rim of the grid (two cells on each side).
+# A surface, settings, and the ways to use less of the grid: a quadrant, half of it, without the rim (two cells on each side).
 PARTS = (
     (SPHERE, (), "qdr"), (SPHERE, ("grid.cells=[24, 24]", "load.moment_ratio=0.97"), "qdr"),
     (SPHERE, ("load.twist=1e-3",), "qdr"), (SPHERE, ("grid.cells=[32, 24]",), "qr"),

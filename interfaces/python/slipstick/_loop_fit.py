@@ -13,10 +13,10 @@ from ._loop_path import COUNTED, Array, Path, Start, row_noise, trimmed_mean
 
 _PRICE = 12.0  # chi squared that a parameter has to gain
 _SETTLED = 1e-2  # chi squared that a last step gains
-_SLOW = 1e-3  # logarithm of the mean square, which a slow step gains; two of them end the fit of a law
-_NEAR = 0.03  # that is farther off than this, over the largest load; and one of them
-_FAR = 10.0  # that of a law which is so many times as far off as the nearest one
-_MAX_STARTS = 3  # that are tried with every combination of parameters
+_SLOW = 1e-3  # a slow step lowers the logarithm of the mean square by less
+_NEAR = 0.03  # residual over the largest load; two slow steps end the fit of a law that has more
+_FAR = 10.0  # residual over that of the nearest law; one slow step ends the fit of a law that has more
+_MAX_STARTS = 3  # starts to try with every combination of parameters
 _LARGEST_PART = 0.8  # proportion of a field that is added to a law: a larger one hides the law
 
 
@@ -83,7 +83,7 @@ class _Fitter:
     family: Family
     start: Start
     start_is_free: bool
-    columns: Array = field(init=False)  # that are added in proportion: an offset, unless it is rest, and Family.beside
+    columns: Array = field(init=False)  # fields added in proportion: an offset, unless the path begins at rest; Family.beside
 
     def __post_init__(self) -> None:
         rows = len(self.path.twist)

@@ -24,9 +24,10 @@ COUNTED = 0.98  # part of the rows that counts: the others are farthest off, suc
 
 
 class TorsionCurve:
-    """M/M_lim of first loading at t under a profile of exact, through states from next to no slip to next to gross slip. What
-    slip takes off is interpolated, by cubics over logarithms with the exact slopes, a power of the rotation beyond full stick
-    at first: small moments keep its digits. Relative errors are below 1e-9, for a rounded punch below 2e-7."""
+    """M/M_lim of first loading at t under a profile of exact, through states from almost no slip to almost gross slip. The
+    interpolated quantity is the moment that slip takes off, by cubics over logarithms with the exact slopes; below the first
+    state it is a power of the rotation, so that small moments keep their digits. Relative errors are below 1e-9, for a rounded
+    punch below 2e-7."""
 
     def __init__(self, profile: str) -> None:
         constants, parts = exact.profile_named(profile), 0.5 * 10.0**np.arange(-9, 1 / 256, 1 / 128)
@@ -210,7 +211,7 @@ class Law:
 
 def follow(turns: list[int], twist: Array, ends: Array, turned: Array, law: Law) -> Array:
     """The law's moments, for each trial (rows of twist, of the rotations at its turns, and of how far it was turned before).
-    All trials remember the reversals that the first one does."""
+    The reversals of the first trial are the reversals of all."""
     signs = np.where(ends[0, 1:] >= ends[0, :-1], 1.0, -1.0)
     before = -signs[0] * turned[:, None]
     if law.rule == "elastic":

@@ -159,7 +159,7 @@ def command(name: str, *words: Path_, progress: Progress = None) -> Result:
 
 
 def _solve_listed(command: str, words: list[Path_], executor: Executor | None, progress: Progress) -> None:
-    """Solves the runs that a command lists, then those that it lists with their results, until it lists nothing new."""
+    """Solves the runs that a command lists, and lists again with their results, until the list is empty."""
     seen: set[str] = set()
     while executor is not None:
         with tempfile.TemporaryDirectory() as folder:

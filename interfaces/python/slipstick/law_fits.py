@@ -246,8 +246,8 @@ def _corners(curve: Curve, error: float, most: float = inf) -> list[tuple[float,
 
 
 def _missing(curve: Curve, error: float, count: int) -> float:
-    """Positive: the moment that so many lines do not reach. Negative: they reach the limit, that much beyond the rotation at
-    which they may."""
+    """Positive: the part of the limit that `count` lines do not reach. Negative: the lines reach the limit; the value is the
+    rotation by which they exceed the allowed one."""
     corners = _corners(curve, error, count)
     if corners[-1][1] < 1:
         return 1 - corners[-1][1]

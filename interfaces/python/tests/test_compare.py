@@ -256,7 +256,7 @@ class MadeTimesTest(unittest.TestCase):
             self.assertLessEqual(sum(first == 2 for first, _ in verdicts), 5)
 
     def test_alarms_come_as_often_as_the_level_says_where_every_change_counts(self):
-        """Of 400 runs at 5 % 20 are expected, 33 is three standard deviations more; some must occur."""
+        """400 runs at 5 % give 20 alarms in the mean, and 33 at three standard deviations; some must occur."""
         generator = np.random.default_rng(13)
         for paired in (True, False):
             alarms = sum(compare(*draw(generator, 5, 10, paired, **DRIFTING), Rules(effect=1e-9, level=0.05)).exit_code() == 1

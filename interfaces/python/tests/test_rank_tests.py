@@ -27,9 +27,9 @@ class RankTestsTest(unittest.TestCase):
                 self.assertAlmostEqual(shift.p_positive / high, 1.0, delta=1e-11)
 
     def test_count_ties_as_they_are(self):
-        """By hand: mid-ranks 1, 2.5, 2.5, 4, pairs sum to 3.5 (twice), 5 (twice) and 6.5 (twice). Of differences the zero is
-        left out, and 1, 1, -1, 2 have the ranks 2, 2, 2, 4: the positive ones sum to 8, and to as much or more in four of the
-        sixteen ways to sign them. Then all choices of four of nine."""
+        """By hand: mid-ranks 1, 2.5, 2.5, 4, pairs sum to 3.5 (twice), 5 (twice) and 6.5 (twice). The difference
+        of zero is left out, and 1, 1, -1, 2 have the ranks 2, 2, 2, 4: the positive ranks sum to 8, and to 8 or more in four of
+        the sixteen ways to sign them. Then all choices of four of nine."""
         self.assertAlmostEqual(rank_sum_shift([1.0, 2.0], [2.0, 3.0]).p_positive, 2 / 6, delta=1e-15)
         self.assertEqual(rank_sum_shift([1.0, 2.0], [2.0, 3.0]).p_negative, 1.0)
         signed = signed_rank_shift([0.0, 1.0, 1.0, -1.0, 2.0])

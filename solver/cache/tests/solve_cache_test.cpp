@@ -44,8 +44,8 @@ void expect_the_same(const Solution& solution, const Solution& alone) {
   EXPECT_EQ(solution.pressure_applications, alone.pressure_applications);
 }
 
-/// Whatever a solve shares, and with whom, its answer has the bits and its work the counts that it has alone;
-/// it says no shorter time than its parts took.
+/// A solve that shares tables with others has the bits and the counts of work of a solve by itself; its time
+/// is no shorter than the times of its parts.
 TEST(SolveCache, ChangesNoBit) {
   const std::vector<Scene> scenes = scenes_that_share();
   std::vector<Solution> alone;

@@ -202,7 +202,7 @@ TEST_F(Nothing, IsSaidByAFactorOfOne) {
   EXPECT_THAT(refused("125"), says("0.8 times these: ["));
 }
 
-/// What resumed histories give is tested with the program.
+/// The answers of resumed histories are tested with the program.
 TEST_F(LoadParts, AStateOfAnotherSceneIsRefused) {
   const std::string steps = push_and_twist(1);
   const Scene scene = read(kShortScene + steps, {"load.moment_ratio=0"});
@@ -242,8 +242,8 @@ double in_energy_norm(const ModelSolution& solution, const Eigen::ArrayXd& q) {
   return (q * u).sum() * model.grid.cell_area() * model.moment_unit();
 }
 
-/// In each step: dissipated + stored + |change of q|_K^2/2 is what the loads at its end do. That is Coulomb's
-/// law of the step, s.q = -mu p |s|, with s = K (change of q) less the rigid motion.
+/// In each step: dissipated + stored + |change of q|_K^2/2 is the work of the loads at its end. This follows
+/// from Coulomb's law of the step, s.q = -mu p |s|, with s = K (change of q) less the rigid motion.
 TEST(Energy, GoesIntoHeatAndElasticity) {
   const auto steps = shaken();
   ASSERT_EQ(steps.size(), 4U);

@@ -43,9 +43,9 @@ TEST(Resolution, WidthsOfACircleAndItsRingAreThoseOfTheCircles) {
   EXPECT_NEAR(found.slip_width, 16.0, 1.6);
 }
 
-// All of it sticks under a constant pressure: what h/r leaves everywhere and at a sharp edge, and 3/2 of what
-// counting leaves open of the area, with h/r = pi/(2 n) along an axis of n cells. Which of them is the longer
-// does not matter.
+// The whole strip sticks under a constant pressure. Its error has the part of h/r everywhere and at a sharp
+// edge, and 3/2 of the relative error of the counted area, with h/r = pi/(2 n) along an axis of n cells. The
+// axes may be exchanged.
 TEST(Resolution, OfAStripHasBothAxesInTheMean) {
   const double cell = std::numbers::pi * std::sqrt((1.0 / (40 * 40) + 1.0 / (20 * 20)) / 8.0);
   for (const auto& [n1, n2] : {std::pair{40, 20}, {20, 40}}) {

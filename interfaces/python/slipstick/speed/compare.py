@@ -247,8 +247,8 @@ def _case(benchmark: Compared) -> dict[str, Any]:
 
 
 def report(base: str, now: str, rules: Rules, comparison: Comparison, second: Comparison | None = None) -> dict[str, Any]:
-    """For a person, a script and a CI server: text, the worst first, result, and what JUnit's XML and a table in Markdown show.
-    The names are those of the files. second: the second run of the benchmarks that looked slower, if any."""
+    """The comparison as a text with the worst benchmark first, as the JSON result, and as the rows of JUnit's XML and of a table
+    in Markdown. base, now: names of the files. second: the second run of the benchmarks that looked slower, if any."""
     worst_first = sorted(comparison.benchmarks, key=lambda benchmark: (
         SEVERITY.index(benchmark.finding), 0.0 if math.isnan(benchmark.ratio) else -benchmark.ratio))
     counts = _counts(comparison.benchmarks)

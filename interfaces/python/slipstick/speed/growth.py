@@ -122,6 +122,6 @@ def seconds_of(members: dict[float, Benchmark]) -> Family:
 
 
 def scaling(timings: Timings) -> list[dict[str, Any]]:
-    """Of each family its rows, and its growth as measured and by theory."""
+    """The rows of each family, with its growth as measured and by theory."""
     return [{"name": name, "rows": [_row(cells, own[cells], seconds) for cells, seconds in seconds_of(own).items()],
              "power_law": _power_law(name, seconds_of(own))} for name, own in families(timings).items()]

@@ -77,8 +77,8 @@ def _waiting(file: Timings) -> str:
 
 
 def find_obstacles(base: Timings, now: Timings, rules: Rules) -> list[str]:
-    """Reasons not to judge the times of two files: different machines, debug builds, load, one file twice. What waits for a
-    processor is a reason in independent runs only; load slows both sides of a pair alike."""
+    """Reasons not to judge the times of two files: different machines, debug builds, load, one file twice. Load is
+    a reason in independent runs only: it slows both sides of a pair alike."""
     found = []
     paired = are_paired(base, now)
     differences = _machine_differences(base, now)

@@ -1,4 +1,4 @@
-"""The speed-error plane of `slipstick bench`: which solves it measures, and what is made of their times and errors.
+"""The speed-error plane of `slipstick bench`: the design of its solves, and the judgement of their times and errors.
 
 A point of the plane is a choice of method, operator, model, pressure, mesh and tolerance with the seconds of a solve and the
 errors that it buys (docs/schema/plane.schema.json).
