@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "convergence/programs/package_module.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
@@ -33,12 +34,9 @@ void replace(std::string& word, const std::string& name, const fs::path& file) {
     word.replace(at, name.size(), file.string());
 }
 
-/// The Python that draws reports, which has NumPy.
-const std::string kPython = *SLIPSTICK_PYTHON != '\0' ? SLIPSTICK_PYTHON : "python3";
-
 ProgramEnd run(const SolverProgram& program, std::vector<std::string> words, double seconds,
                const fs::path& tied_by) {
-  for (std::string& word : words) replace(word, "{python}", kPython);
+  for (std::string& word : words) replace(word, "{python}", python_interpreter());
   const fs::path folder = program.file.parent_path();
   return Program(words, {.captured = Captured::everything,
                          .tied_by = tied_by,

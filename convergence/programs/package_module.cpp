@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Folder from which Python imports the package `slipstick`: around the program in a wheel, in share/ of an
-/// installation, beside the program in a build.
+/// installation, in the program's folder in a build.
 fs::path package_folder() {
   const fs::path folder = own_program_file().parent_path();
   for (const fs::path& candidate :
@@ -29,13 +29,6 @@ fs::path package_folder() {
       fmt::format("this command is part of the Python package, which is not installed with {}: build the "
                   "target slipstick_python, or install all of slipstick",
                   own_program_file().string()));
-}
-
-std::string interpreter() {
-  const char* const chosen = std::getenv("SLIPSTICK_PYTHON");
-  if (chosen != nullptr && *chosen != '\0') return chosen;
-  const std::string found = SLIPSTICK_PYTHON;
-  return found.empty() ? "python3" : found;
 }
 
 /// -I ignores PYTHONPATH, PYTHONHOME and the working folder.
@@ -51,8 +44,15 @@ else:
 
 }  // namespace
 
+std::string python_interpreter() {
+  const char* const chosen = std::getenv("SLIPSTICK_PYTHON");
+  if (chosen != nullptr && *chosen != '\0') return chosen;
+  const std::string found = SLIPSTICK_PYTHON;
+  return found.empty() ? "python3" : found;
+}
+
 ModuleAnswer run_package_module(const std::string& module, const Json& request) {
-  const std::string python = interpreter();
+  const std::string python = python_interpreter();
   Program program({python, "-I", "-B", "-c", kRunModule, package_folder(), module},
                   {.captured = Captured::output, .fed = true, .tied_by = own_program()});
   program.feed(request.dump(-1, ' ', true, Json::error_handler_t::replace));
