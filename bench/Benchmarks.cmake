@@ -27,8 +27,8 @@ foreach(function
 endforeach()
 if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
   add_dependencies(tests slipstick_work)
-  add_test(NAME bench.work_counts COMMAND ${SLIPSTICK_PYTHON} -B ${SLIPSTICK_RUN_TEST} ${CMAKE_CURRENT_SOURCE_DIR}/work/tests/work_counts_test.py
-    $<TARGET_FILE:slipstick_work>)
+  add_test(NAME bench.work_counts COMMAND ${SLIPSTICK_PYTHON} -B ${SLIPSTICK_RUN_TEST}
+    ${PROJECT_SOURCE_DIR}/bench/work/tests/work_counts_test.py $<TARGET_FILE:slipstick_work>)
   set_tests_properties(bench.work_counts PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
 endif()
 
