@@ -9,6 +9,7 @@
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/loop_record.hpp"
 #include "convergence/check/loops/loop_request.hpp"
+#include "convergence/check/mesh_request.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/provenance.hpp"
@@ -25,7 +26,17 @@ struct CheckRequest {
   std::string field;
   std::vector<std::string> overrides;
   CheckOptions check;
+  MeshOptions mesh;
 };
+
+/// Runs the module of the Python package that judges the requested file.
+int run_judge(const char* module, const Json& request, std::ostream& text, Json& result) {
+  const ModuleAnswer answer = run_package_module(module, request);
+  result = answer.result;
+  result["provenance"] = provenance(1);
+  text << answer.text;
+  return answer.exit_code;
+}
 
 int run_check(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
   if (request.check.twist && !std::isfinite(*request.check.twist)) {
@@ -45,11 +56,19 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
     }
     LoopOptions options{.strict = request.check.strict};
     if (request.check.tolerance) options.tolerance = *request.check.tolerance;
-    const ModuleAnswer answer = run_package_module("loops", loop_request(scene, request.field, options));
-    result = answer.result;
-    result["provenance"] = provenance(1);
-    text << answer.text;
-    return answer.exit_code;
+    return run_judge("loops", loop_request(scene, request.field, options), text, result);
+  }
+  if (request.mesh.any() || (request.check.columns.empty() && is_mesh_file(request.field))) {
+    if (request.check.discrete || request.check.pressure_given || !request.check.columns.empty()) {
+      throw solver::InputError(request.field,
+                               "is a field on a mesh; --discrete, --pressure-given and --columns are for a "
+                               "field on a regular grid; allowed: without them");
+    }
+    MeshOptions mesh = request.mesh;
+    mesh.twist = request.check.twist;
+    mesh.tolerance = request.check.tolerance;
+    mesh.strict = request.check.strict;
+    return run_judge("meshes", mesh_request(scene, request.overrides, request.field, mesh), text, result);
   }
   const FieldCheck check = check_field(scene, request.field, request.check);
   result = to_json(check);
@@ -68,6 +87,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       ->add_option(
           "field", request->field,
           "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: text, .h5 or .vti; or a "
+          "field at any points or on a mesh: text, .vtu, .vtk, .frd, .xdmf, ...; or a "
           "loop: moment (N m), rotation (rad), or force (N), displacement (m), and perhaps time, "
           "normal_load: text or .json")
       ->required();
@@ -92,6 +112,25 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
                     "take the field's pressure as given: judge only its load, and the tractions under it");
   command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
+  MeshOptions& mesh = request->mesh;
+  command->add_option(
+      "--stick-slope", mesh.stick_slope,
+      "Pa/m, of a field on a mesh: shear stress over the slip at which its penalty lets it stick");
+  command->add_option("--normal-stiffness", mesh.normal_stiffness,
+                      "Pa/m, of a field on a mesh: pressure over the penetration of its penalty");
+  command
+      ->add_option(
+          "--held-at", mesh.held_at,
+          "m, of a field on a mesh: radius at which the bodies are held, perhaps with a factor of its "
+          "effect on the reported twist")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->allow_extra_args(false);
+  command
+      ->add_option("--read-as", mesh.read_as,
+                   "choices for the reader of a field on a mesh, each key=value: kind=nodes, units=mm,MPa, "
+                   "body=upper, axis=z, pressure=CPRESS, ...")
+      ->expected(1);
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
       "0: good; 1: bad; 2: cannot be judged. docs/guides/verify-your-solver.md explains each number.");

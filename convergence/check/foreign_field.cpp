@@ -28,6 +28,8 @@ constexpr double kMaxCellsPerRow = 100.0;
 constexpr double kQuickGridCells = 65536.0;  // judged within seconds
 /// Length of a cell over its width. No contact is so slender: a larger ratio is a mistake in a column.
 constexpr double kMaxSlender = 1000.0;
+/// Positions are those of a mesh where more than this part of them lies on no regular grid.
+constexpr double kMaxOff = 0.1;
 /// Rows are taken to be astray where at most this part of all rows lies beyond the widest gap,
 constexpr double kMaxAstray = 0.02;
 /// and that gap is wider than this multiple of the width of all rows of cells side by side,
@@ -137,6 +139,14 @@ Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
                                worst + 1, x.name, x.values[worst], axis.first, axis.spacing));
 }
 
+/// The part of the rows that lie further from the places of an axis than find_axis() accepts.
+double part_off(const solver::Column& x, const Axis& axis) {
+  const ArrayXd place = (x.values - axis.first) / axis.spacing;
+  const double rounding = find_precision(x.values).rounding(x.values).maxCoeff() / axis.spacing;
+  const double accepted = std::clamp(2.0 * rounding, kOffCentre, kDistinguishesCells);
+  return ((place - place.round()).abs() > accepted).cast<double>().mean();
+}
+
 /// Refuses a grid with too many or too slender cells, before memory is taken for each of them.
 void require_judgeable(const std::filesystem::path& file, const solver::Column& x1, const Axis& axis1,
                        const solver::Column& x2, const Axis& axis2) {
@@ -182,6 +192,20 @@ void read_missing_as_no_contact(const std::filesystem::path& file, std::vector<s
 }
 
 }  // namespace
+
+bool lies_on_grid(const solver::Column& x1, const solver::Column& x2) {
+  double cells = 1.0;
+  for (const solver::Column& x : {x1, x2}) {
+    if (x.values.hasNaN()) return true;
+    const double range = x.values.maxCoeff() - x.values.minCoeff();
+    const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
+    if (places.size() < kMinRowsAcross) return true;
+    const Axis axis = fit_axis(places);
+    if (part_off(x, axis) > kMaxOff) return false;
+    cells *= static_cast<double>(axis.count);
+  }
+  return cells <= std::max(kQuickGridCells, kMaxCellsPerRow * static_cast<double>(x1.values.size()));
+}
 
 FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
                           const solver::Column& x2) {

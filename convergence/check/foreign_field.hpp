@@ -28,6 +28,10 @@ struct FieldGrid {
 FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
                           const solver::Column& x2);
 
+/// Whether positions are those of a regular grid, up to a few mistakes that find_field_grid() names, and not
+/// those of a mesh.
+bool lies_on_grid(const solver::Column& x1, const solver::Column& x2);
+
 /// Pressure and shear tractions that another program computed, over the bounding rectangle of its contact
 /// cells. A cell without a row in the file carries nothing.
 struct ForeignField {

@@ -8,7 +8,7 @@ import signal
 import threading
 import warnings
 import weakref
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -145,8 +145,14 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
     >>> solution.fields["pressure"].shape
     (48, 48)
     """
+    return solve_assigned(scene, assignments(overrides), accuracy=accuracy, progress=progress)
+
+
+def solve_assigned(scene: Scene, words: Sequence[str], *, accuracy: float = 0.0,
+                   progress: Callable[[int, float], object] | None = None) -> Solution:
+    """As solve(), with the overrides in the form of --set: "load.moment_ratio=0.5"."""
     text, name = text_of(scene)
-    words = [_library.encoded(word) for word in assignments(overrides)]
+    encoded = [_library.encoded(word) for word in words]
     called = _Progress(progress)
     pointer = ctypes.c_void_p()
     in_main = threading.current_thread() is threading.main_thread()
@@ -154,8 +160,8 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
     before = signal.signal(signal.SIGINT, called.interrupt) if in_main else None
     try:
         status = _library.function("solve")(
-            None if text is None else _library.encoded(text), _library.encoded(name), len(words),
-            (ctypes.c_char_p * len(words))(*words), accuracy, called.function, None, _library.byref(pointer))
+            None if text is None else _library.encoded(text), _library.encoded(name), len(encoded),
+            (ctypes.c_char_p * len(encoded))(*encoded), accuracy, called.function, None, _library.byref(pointer))
         message = _library.message() if status != _library.OK else ""
     finally:
         if in_main:
@@ -168,5 +174,5 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
     assert pointer.value is not None
     solution = Solution(pointer.value, message)
     if not solution.converged:
-        warnings.warn(message, NotConvergedWarning, stacklevel=2)
+        warnings.warn(message, NotConvergedWarning, stacklevel=3)
     return solution

@@ -1,0 +1,173 @@
+"""`slipstick check` of a field on a mesh: the request of the program, and the answer with its text and result."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Optional
+
+import numpy as np
+
+from ..errors import InputError
+from .causes import causes_of
+from .field import ContactField
+from .measures import Bodies, Law
+from .read import read
+from .right import Right, exact_answer, solved_answer
+from .units import in_units_of
+from .verdict import Examined, examine, percent
+
+#: Cells across the contact of the solve that a field is compared with, for each of its own faces; and their range.
+_FINER, _LEAST, _MOST = 3.0, 96, 384
+#: Other signs of both tractions are taken if they come closer to the right ones than this part of the field's own distance.
+_CLEARLY = 0.5
+
+
+def answer(request: dict[str, Any]) -> dict[str, Any]:
+    """The verdict on the field of a request (convergence/check/mesh_request.cpp)."""
+    examined, notes = _examined(request)
+    causes = causes_of(examined, request) if examined.wrong else []
+    good = not examined.wrong and not (request["strict"] and notes)
+    undecided = good and not examined.shows
+    if undecided:
+        raise InputError(f"{request['field']}: cannot be judged, though nothing is wrong that this mesh shows: {examined.advice}")
+    why = _why(examined, causes, good)
+    choices = examined.field.said + notes
+    result = {"name": request["name"], "field": request["field"], "verdict": "good" if good else "bad", "why": why,
+              "causes": causes, "choices": choices, "kind": examined.field.kind, "rows": len(examined.field.points),
+              "faces_across": examined.across, "right_answer": examined.right.source, **_numbers(examined),
+              "judged": [{"quantity": item.quantity, "value": _finite(item.value), "allowed": item.allowed,
+                          "mesh": item.right, "holds": bool(item.holds)} for item in examined.judged]}
+    return {"exit_code": 0 if good else 1, "text": _text(result, examined), "result": result}
+
+
+def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
+    field = read(request["field"], **_reading(request["read_as"]))
+    springs = _springs(request)
+    right = _right(request, springs, None)
+    field = in_units_of(field, right.contact_radius, right.normal_load)
+    field, notes = _signed(field, right, any(word.startswith("body=") for word in request["read_as"]))
+    across = 2 * right.contact_radius / np.sqrt(np.pi * right.contact_radius**2 / max(1, np.count_nonzero(field.pressure)))
+    if request["exact"] is None or springs:
+        right = _right(request, springs, int(np.clip(_FINER * across, _LEAST, _MOST)))
+    others = {"a solve on cells as large as the faces": _right({**request, "exact": None}, springs, int(np.clip(across, 12, _MOST)))}
+    law = Law(request["friction"])
+    single = request["steps"] == 1 and request["half_spaces"]
+    bodies = Bodies.of(request["upper"], request["lower"], springs.get("layer.tangential_compliance", 0.0)) if single else None
+    held = 0.0
+    if request["held_at"]:
+        radius, factor = [*request["held_at"], 1.0][:2]
+        held = factor * right.moment * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"]) / (
+            4 * np.pi * radius**3)
+    examined = examine(field, right, others, law, bodies, request["twist"], held, request["tolerance"])
+    if springs and request["exact"] is not None:
+        bare = exact_answer(request["exact"])
+        examined.notes.append(f"springs change the twist by {100 * (right.twist / bare.twist - 1):+.2g} % and the contact radius by "
+                              f"{100 * (right.contact_radius / bare.contact_radius - 1):+.2g} %; the mesh explains "
+                              f"{percent(examined.allowances['twist'])} of the twist")
+    if held:
+        examined.notes.append(f"bodies held at {request['held_at'][0]:g} m turn {percent(held / right.twist)} less")
+    return examined, notes
+
+
+def _reading(words: list[str]) -> dict[str, Any]:
+    """The options of read() from words "key=value"; other keys name arrays."""
+    options: dict[str, Any] = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            raise InputError(f"--read-as {word}; allowed: key=value, as kind=nodes or pressure=CPRESS")
+        if key == "centre":
+            options[key] = [_number(word, part) for part in value.split(",")]
+        elif key in ("kind", "units", "body", "axis", "basis"):
+            options[key] = value
+        else:
+            options.setdefault("names", {})[key] = value
+    return options
+
+
+def _number(word: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"--read-as {word}: {text} is no number; allowed: centre=X1,X2") from None
+
+
+def _springs(request: Mapping[str, Any]) -> dict[str, Any]:
+    """The scene's keys of a layer that is as soft as the penalties."""
+    slope, stiffness = request["stick_slope"], request["normal_stiffness"]
+    for option, value in (("--stick-slope", slope), ("--normal-stiffness", stiffness)):
+        if value is not None and not (value > 0 and np.isfinite(value)):
+            raise InputError(f"{option} {value:g}; allowed: above zero, in Pa/m")
+    if slope is None and stiffness is None:
+        return {}
+    return {"layer.kind": "winkler", "layer.normal_compliance": 1 / stiffness if stiffness else 0.0,
+            "layer.tangential_compliance": 1 / slope if slope else 0.0}
+
+
+def _right(request: Mapping[str, Any], springs: Mapping[str, Any], cells: Optional[int]) -> Right:
+    if request["exact"] is not None and not springs:
+        return exact_answer(request["exact"])
+    return solved_answer(request["scene"], request["overrides"], springs, cells)
+
+
+def _signed(field: ContactField, right: Right, given: bool) -> tuple[ContactField, list[str]]:
+    """The field with its tractions on the lower body: on the other one both have the other sign."""
+    wanted = right.fields(field.points)[:, 1:]
+    own, turned = (np.abs(sign * field.traction - wanted).sum() for sign in (1, -1))
+    if given or not turned < _CLEARLY * own:
+        return field, []
+    return (field.replaced(traction=-field.traction, slip=None if field.slip is None else -field.slip),
+            ["Body: the tractions are those on the upper body, since with the other sign they carry the scene's loads."])
+
+
+def _finite(value: float) -> Optional[float]:
+    return float(value) if np.isfinite(value) else None
+
+
+def _numbers(examined: Examined) -> dict[str, Any]:
+    load, moment, force = examined.judge.loads(examined.values)
+    motion = examined.motion
+    return {"normal_load": load, "moment": moment, "force": force.tolist(), "contact_radius": examined.judge.radius(examined.values),
+            "stick_radius": examined.judge.stick_radius(examined.values), "twist": examined.reported,
+            "twist_of_tractions": None if motion is None else motion.twist, "right_twist": examined.right_twist,
+            "right_stick_radius": examined.judge.stick_radius(examined.judge.reference)}
+
+
+def _why(examined: Examined, causes: list[str], good: bool) -> str:
+    if good:
+        tractions = examined.number("tractions")
+        assert tractions is not None
+        return (f"right within its mesh: the tractions are {percent(tractions.value)} off in the mean (allowed on this mesh: "
+                f"{percent(tractions.allowed)})")
+    if not examined.wrong:
+        return "it is right, but not in the scene's own signs"
+    first, *rest = [item.words for item in examined.wrong]
+    parts = [first]
+    if causes:
+        parts.append(f"likely cause: {', and '.join(causes)}")
+    if rest:
+        parts.append(f"also wrong: {'; '.join(rest)}")
+    if not examined.shows:
+        parts.append(examined.advice)
+    return "; ".join(parts)
+
+
+def _text(result: Mapping[str, Any], examined: Examined) -> str:
+    def line(name: str, value: str) -> str:
+        return f"  {name:<16} {value}\n"
+
+    text = f"{result['verdict']}: {result['why']}\n"
+    text += line("field", f"{result['field']}: {result['rows']} {result['kind']}, {result['faces_across']:.3g} across the radius")
+    text += "".join(line("" if k else "read as", choice) for k, choice in enumerate(result["choices"]))
+    text += line("compared with", "; ".join([result["right_answer"], *examined.notes]))
+    for name, value, unit, right in (("normal load", result["normal_load"], "N", examined.right.normal_load),
+                                     ("contact radius", result["contact_radius"], "m", examined.right.contact_radius),
+                                     ("moment", result["moment"], "N m", examined.right.moment),
+                                     ("twist", result["twist"], "rad", result["right_twist"]),
+                                     ("twist caused", result["twist_of_tractions"], "rad", examined.right.twist),
+                                     ("stick radius", result["stick_radius"], "m", result["right_stick_radius"])):
+        if value is not None:
+            text += line(name, f"{value:.6g} {unit} (right: {right:.6g})")
+    for item in examined.judged:
+        text += line("holds" if item.holds else "FAILS", f"{item.quantity:<26} {item.value:>9.1e}   allowed on this mesh "
+                                                        f"{item.allowed:.1e}")
+    return text

@@ -1,0 +1,151 @@
+"""The verdict on a field on a mesh: each number against the one that right answers on the same mesh have."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field as with_default
+from typing import Any, Optional
+
+import numpy as np
+
+from .field import Array, ContactField
+from .measures import Bodies, Judge, Kernels, Law, Motion
+from .patches import Patches, patches_of, put_on
+from .right import Right
+
+#: Errors of right answers on the mesh, times this, are allowed: they know the mesh's own error to about a half.
+_WHOLE_MESH = 2.0
+#: Allowed whatever the mesh is: digits of moduli, loads and friction coefficients, tolerances of iterations.
+_FLOORS = {"normal_load": 2e-3, "contact_radius": 2e-3, "pressure": 5e-3, "moment": 2e-3, "force": 2e-3, "friction": 2e-3,
+           "friction_bound": 1e-3, "stick_radius": 5e-3, "tractions": 5e-3, "radial_shear": 5e-3, "twist": 2e-3,
+           "twist_of_tractions": 2e-3, "displacement_of_tractions": 2e-3, "stick_motion": 5e-3, "slip_direction": 0.5}
+#: A mesh that explains more than this part of the tractions cannot show whether they are right.
+_SHOWS = 0.2
+#: Tractions within which a mesh shows them well; the advice to a user is the mesh for that.
+_WELL = 0.05
+
+_WRONG = {
+    "normal_load": "the normal load is {off}", "contact_radius": "the contact radius is {off}",
+    "pressure": "the pressure is {part} off in the mean", "moment": "the moment is {off}",
+    "force": "the tangential force is off by {part} of the limit", "friction": "|q| is {off} for its friction bound where it slips",
+    "friction_bound": "|q| exceeds the friction bound, by {part} of it in the mean",
+    "stick_radius": "the stick radius is {part} of the contact radius too {low}",
+    "tractions": "the tractions are {part} off in the mean", "radial_shear": "the shear along the radius is {part} of the tractions",
+    "twist": "the twist is {off}", "twist_of_tractions": "the twist that the tractions cause is {off}",
+    "displacement_of_tractions": "the displacement that the tractions cause is {part} off",
+    "stick_motion": "the stick area does not move rigidly: it is {part} off",
+    "slip_direction": "slip is not opposed to traction: {degrees} off in the mean",
+}
+#: The order in which the first wrong quantity heads the verdict: causes before effects.
+_ORDER = ("normal_load", "contact_radius", "pressure", "moment", "force", "radial_shear", "friction", "friction_bound", "tractions",
+          "stick_radius", "twist", "twist_of_tractions", "displacement_of_tractions", "stick_motion", "slip_direction")
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A number and the largest size that is allowed, which NaN exceeds. `right`: the largest one of right answers on the mesh."""
+
+    quantity: str
+    value: float
+    allowed: float
+    right: float
+
+    @property
+    def holds(self) -> bool:
+        return abs(self.value) <= self.allowed
+
+    @property
+    def words(self) -> str:
+        low = "low" if self.value < 0 else "high"
+        text = _WRONG[self.quantity].format(off=f"{percent(self.value)} too {low}", part=percent(self.value),
+                                            low="small" if self.value < 0 else "large", degrees=f"{self.value:.2g} degrees")
+        allowed = f"{self.allowed:.2g} degrees" if self.quantity == "slip_direction" else percent(self.allowed)
+        return f"{text} (allowed on this mesh: {allowed})"
+
+
+@dataclass
+class Examined:
+    """A field, the right answer on its mesh, and what was measured. values (n, 3): pressure, q1, q2 of the field."""
+
+    field: ContactField
+    right: Right
+    values: Array
+    patches: Patches
+    judge: Judge
+    kernels: Optional[Kernels]
+    motion: Optional[Motion]
+    allowances: dict[str, float]
+    judged: list[Judged]
+    reported: Optional[float]
+    right_twist: float
+    across: float
+    notes: list[str] = with_default(default_factory=list)
+
+    def number(self, quantity: str) -> Optional[Judged]:
+        return next((item for item in self.judged if item.quantity == quantity), None)
+
+    @property
+    def wrong(self) -> list[Judged]:
+        return sorted((item for item in self.judged if not item.holds), key=lambda item: _ORDER.index(item.quantity))
+
+    @property
+    def shows(self) -> bool:
+        """Whether the mesh distinguishes right tractions from wrong ones."""
+        return self.allowances["tractions"] <= _SHOWS
+
+    @property
+    def advice(self) -> str:
+        """The mesh that would show it. Errors fall with the power 3/2 of the size of faces, like a field's that ends in a square
+        root."""
+        wanted = self.across * (self.allowances["tractions"] / _WELL)**(2 / 3)
+        return (f"the mesh has {self.across:.0f} faces across the contact radius, and right answers on it are "
+                f"{percent(self.allowances['tractions'] / _WHOLE_MESH)} apart; about {wanted:.0f} faces show errors of "
+                f"{percent(_WELL)}")
+
+
+def percent(part: float) -> str:
+    size = 100 * abs(part)
+    return "not a number" if np.isnan(size) else f"{size:.2g} %" if size < 10 else f"{size:.0f} %"
+
+
+def examine(field: ContactField, right: Right, others: Mapping[str, Right], law: Law, bodies: Optional[Bodies],
+            reported: Optional[float], held: float, tolerance: Optional[float]) -> Examined:
+    """Measures a field and what its mesh explains:
+
+    1. The right answer is put on the mesh in each way that programs do it, and so are `others`, right answers of other methods.
+    2. All of them and the field are measured in the same way.
+    3. Twice the worst of the right ones is allowed, or `tolerance` for errors of loads, fields and twist.
+
+    reported: the twist that the program reported, rad; held: the part of the right one that is missing because bodies end, rad.
+    """
+    values = np.column_stack([field.pressure, field.traction])
+    patches = patches_of(field, right.fields(field.points)[:, 0])
+    answers = put_on(patches, right.fields)
+    reference = next(iter(answers.values()))
+    judge = Judge(patches, right, reference, law, bodies)
+    answers.update((name, _carrying(judge, next(iter(put_on(patches, other.fields).values())))) for name, other in others.items())
+    fields = [values, *answers.values()]
+    kernels: list[Any] = [None] * len(fields) if bodies is None else judge.kernels(fields)
+    found, *measured = [judge.measure(*each) for each in zip(fields, kernels)]
+    worst = {name: max(abs(each.get(name, 0.0)) for each in measured) for name in _FLOORS}
+    right_twist = right.twist - held
+    if reported is not None:
+        found["twist"] = reported / right_twist - 1
+        worst["twist"] = worst["twist_of_tractions"]
+    allowances = {name: _FLOORS[name] + _WHOLE_MESH * worst[name] for name in _FLOORS}
+    if tolerance is not None:
+        allowances = {name: np.degrees(tolerance) if name == "slip_direction" else tolerance for name in _FLOORS}
+    judged = [Judged(name, value, allowances[name], worst[name]) for name, value in found.items()]
+    loaded = reference[:, 0] > 0
+    across = right.contact_radius / np.sqrt(patches.weights @ loaded / max(1, np.count_nonzero(loaded)))
+    motion = None if kernels[0] is None else judge.motion(kernels[0])
+    return Examined(field, right, values, patches, judge, kernels[0], motion, allowances, judged, reported, right_twist, across)
+
+
+def _carrying(judge: Judge, values: Array) -> Array:
+    """The right answer of another method on the mesh, scaled to the loads of the right answer: a program controls its loads."""
+    (load, moment, force), right = judge.loads(values), judge.right
+    along = right.force @ force
+    shear = right.moment / moment if abs(along) <= abs(moment) / right.contact_radius * np.hypot(*right.force) else (
+        right.force @ right.force / along)
+    return values * np.array([right.normal_load / load, shear, shear])
+
