@@ -53,6 +53,27 @@ Json exact_json(const solver::Scene& scene) {
   return json;
 }
 
+/// The exact answer of a program that forgets the history: a first loading by the last step. Null where there
+/// is no history.
+Json first_loading_json(const solver::Scene& scene) {
+  if (scene.steps.size() * static_cast<std::size_t>(scene.cycles) == 1) return nullptr;
+  solver::Scene last = scene;
+  last.steps = {scene.steps.back()};
+  last.cycles = 1;
+  if (const auto* ratio = std::get_if<solver::MomentRatio>(&last.steps[0].torsion); ratio && ratio->value < 0)
+    last.steps[0].torsion = solver::MomentRatio{-ratio->value};
+  return exact_json(last);
+}
+
+/// The key of a single step's torsion and its value; null: there is none, or a history.
+Json torsion_json(const solver::Scene& scene) {
+  if (scene.steps.size() != 1) return nullptr;
+  const solver::TorsionLoad& load = scene.steps[0].torsion;
+  const char* const keys[] = {"load.moment_ratio", "load.moment", "load.twist"};
+  const double value = std::visit([](const auto& torsion) { return torsion.value; }, load);
+  return value == 0.0 ? Json() : Json{{keys[load.index()], value}};
+}
+
 Json body_json(const solver::Material& body) {
   return {{"shear_compliance", 2.0 * (1.0 + body.poisson_ratio) / body.young_modulus},
           {"poisson_ratio", body.poisson_ratio}};
@@ -110,6 +131,9 @@ Json mesh_request(const solver::Scene& scene, const std::vector<std::string>& ov
           {"lower", body_json(scene.lower)},
           {"friction", friction_json(law)},
           {"exact", exact_json(scene)},
+          {"first_loading", first_loading_json(scene)},
+          {"torsion", torsion_json(scene)},
+          {"layer", scene.layer.kind != nullptr},
           {"twist", or_null(options.twist)},
           {"tolerance", or_null(options.tolerance)},
           {"strict", options.strict},

@@ -1,3 +1,224 @@
-"""Likely causes of a bad field on a mesh."""
-def causes_of(examined, request):
-    return []
+"""Likely causes of a bad field on a mesh. Each search undoes or repeats one mistake and names it if that explains the field."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from ..errors import InputError
+from .field import Array
+from .measures import Bodies
+from .right import Right
+from .verdict import Examined, percent
+
+#: A mistake explains an error that it lowers to this part, or to the mesh's own.
+_EXPLAINS = 0.35
+#: Ratios of moments and twists count as equal up to this difference.
+_SAME_RATIO = 0.01
+#: Compliances of springs that are tried, over the compliance a/G* of the half-spaces.
+_SPRINGS = np.logspace(-2.5, 1, 8)
+
+Solve = Callable[[Mapping[str, Any]], Right]
+
+
+def causes_of(examined: Examined, request: Mapping[str, Any], solve: Solve) -> list[str]:
+    """The causes that explain what is wrong, most specific first. solve: the right answer with further keys of the scene."""
+    wrong = {item.quantity for item in examined.wrong}
+    searches = (_no_friction(examined), _other_basis(examined, wrong), _pressed_with_friction(examined, wrong),
+                _extrapolated(examined, wrong), _missing_rows(examined, wrong), _other_contact(examined, wrong),
+                _other_friction(examined, request, wrong), _other_moment(examined, request, solve, wrong),
+                _lost_history(examined, request, wrong), _other_twist(examined, request, wrong),
+                _springs(examined, request, solve, wrong), _kernels(examined, request, wrong), _directions(examined, wrong))
+    found: list[str] = []
+    for search in searches:
+        found += list(search)
+    return found
+
+
+def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) -> float:
+    """The distance of the field's tractions (or other ones) from those of an answer on the same mesh, over the right ones."""
+    judge = examined.judge
+    own = examined.values[:, 1:] if shear is None else shear
+    return float(judge.weights @ np.hypot(*(own - fields[:, 1:]).T) / (judge.weights @ judge.size))
+
+
+def _explained(examined: Examined, distance: float) -> bool:
+    """Whether a mistake explains the tractions: it lowers their distance from the right ones to a part, or to what the mesh allows."""
+    own = examined.number("tractions")
+    assert own is not None
+    return distance < _EXPLAINS * abs(own.value) or (distance <= own.allowed < abs(own.value))
+
+
+def _no_friction(examined: Examined) -> Iterator[str]:
+    judge = examined.judge
+    if judge.weights @ np.hypot(*examined.values[:, 1:].T) < 1e-3 * (judge.weights @ judge.size):
+        yield "friction was zero: the field has no shear"
+
+
+def _other_basis(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    if "tractions" not in wrong:
+        return
+    signs = {"q1 has the wrong sign": [[-1, 0], [0, 1]], "q2 has the wrong sign": [[1, 0], [0, -1]],
+             "q1 and q2 are exchanged": [[0, 1], [1, 0]], "q1 and q2 are exchanged, with the wrong sign": [[0, -1], [-1, 0]],
+             "both are turned by 90 degrees": [[0, -1], [1, 0]], "both are turned by -90 degrees": [[0, 1], [-1, 0]]}
+    shear = examined.values[:, 1:]
+    distances = {name: _distance(examined, examined.judge.reference, shear @ np.array(turn)) for name, turn in signs.items()}
+    best = min(distances, key=lambda name: distances[name])
+    if _explained(examined, distances[best]):
+        yield f"the shear is given in another tangential basis: {best}"
+
+
+def _pressed_with_friction(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    if "radial_shear" in wrong:
+        yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
+
+
+def _extrapolated(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    judge = examined.judge
+    beyond = (examined.values[:, 0] > 0) & (judge.reference[:, 0] == 0) & (judge.weights > 0)
+    load = examined.number("normal_load")
+    assert load is not None
+    too_much = (load.value > 0 and not load.holds) or "friction_bound" in wrong
+    if examined.field.kind != "faces" and too_much and beyond.any():
+        yield ("the values are extrapolated to nodes, where they do not carry the loads and exceed the friction bound: use values of "
+               "faces or of quadrature points")
+
+
+def _missing_rows(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    load, pressure = examined.number("normal_load"), examined.number("pressure")
+    judge = examined.judge
+    assert load is not None and pressure is not None
+    given = examined.values[:, 0] > 0
+    off = judge.weights[given] @ np.abs(examined.values[given, 0] - judge.reference[given, 0])
+    if load.value < 0 and not load.holds and off < max(pressure.allowed, _EXPLAINS * abs(load.value)) * examined.right.normal_load:
+        yield f"the pressure is right where it is given: {percent(load.value)} of the contact is missing"
+
+
+def _other_contact(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    radius, load = examined.number("contact_radius"), examined.number("normal_load")
+    assert radius is not None and load is not None
+    if not radius.holds and load.holds and "pressure" in wrong:
+        yield (f"another modulus or radius of the body, a soft normal penalty or a coarse mesh around the contact: its contact is "
+               f"{percent(radius.value)} too {'large' if radius.value > 0 else 'small'} under the same load")
+
+
+def _other_friction(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+    ratio = examined.judge.friction_ratio(examined.values)
+    friction = examined.number("friction")
+    if "friction" not in wrong or friction is None or request["friction"]["kind"] != "coulomb":
+        return
+    low, high = np.quantile(ratio, [0.25, 0.75])
+    if high - low < _EXPLAINS * abs(friction.value) + friction.right and 1 + friction.value > 1e-3:
+        coefficient = request["friction"]["coefficient"]
+        yield f"the friction coefficient is {coefficient * (1 + friction.value):.4g} in place of {coefficient:g}"
+
+
+def _other_moment(examined: Examined, request: Mapping[str, Any], solve: Solve, wrong: set[str]) -> Iterator[str]:
+    moment = examined.number("moment")
+    if moment is None or "moment" not in wrong or not 0 < (ratio := 1 + moment.value) < 2.2 or request["torsion"] is None:
+        return
+    (key, value), = request["torsion"].items()
+    if key == "load.twist":
+        return
+    if ratio < 1:
+        other = solve({key: ratio * value})
+        if not _explained(examined, _distance(examined, other.fields(examined.patches.points))):
+            return
+        steps = 1 / (1 - ratio)
+        early = abs(steps - round(steps)) < _SAME_RATIO * steps**2 and 1.5 < steps < 50
+        name = "half the moment: that of one body" if abs(ratio - 0.5) < _SAME_RATIO else (
+            f"a smaller moment: those of step {round(steps) - 1} of {round(steps)}" if early else "a smaller moment")
+        yield f"the tractions are right under {name} ({ratio:.4g} of the scene's)"
+    elif abs(ratio - 2) < 2 * _SAME_RATIO:
+        yield "the moment is twice the scene's: it was applied to both bodies, or counted twice"
+
+
+def _lost_history(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+    if "tractions" not in wrong:
+        return
+    if (first := request.get("first_loading")) is not None:
+        from .right import exact_answer
+        if _explained(examined, _distance(examined, exact_answer(first).fields(examined.patches.points))):
+            yield "the history is lost: the tractions are those of a first loading by the last step"
+    elif request["steps"] == 1 and "moment" not in wrong and examined.judge.slips.sum() > 8:
+        judge = examined.judge
+        along = np.sum(examined.values[judge.slips, 1:] * judge.reference[judge.slips, 1:], axis=1)
+        if np.mean(along < 0) > 0.2:
+            yield "the tractions are those after a reversal: at the contact's edge they oppose this load"
+
+
+def _other_twist(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+    if examined.reported is None or "twist" not in wrong:
+        return
+    ratio = examined.reported / examined.right_twist
+    upper, lower = (request[body]["shear_compliance"] for body in ("upper", "lower"))
+    names = {"the twist of the upper body only": upper / (upper + lower), "the twist of the lower body only": lower / (upper + lower),
+             "twice the twist of both bodies": 2.0, "a twist in degrees": 180 / np.pi, "a twist in mrad": 1000.0,
+             "a twist of the other sign": -1.0}
+    twist = examined.number("twist")
+    assert twist is not None
+    for name, value in names.items():
+        if abs(ratio / value - 1) <= twist.allowed:
+            yield f"it reports {name}"
+            return
+
+
+def _springs(examined: Examined, request: Mapping[str, Any], solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """Repeats the solve with springs between the bodies, of which the best compliance is taken."""
+    if request["stick_slope"] or request["normal_stiffness"] or not request["half_spaces"] or request["layer"] or not (
+            wrong & {"tractions", "pressure", "contact_radius", "stick_motion"}):
+        return
+    judge, points = examined.judge, examined.patches.points
+    unit = examined.right.contact_radius * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"])
+    for column, option, key in ((0, "normal stiffness", "layer.normal_compliance"), (1, "stick slope", "layer.tangential_compliance")):
+        own = examined.number("pressure" if column == 0 else "tractions")
+        assert own is not None
+        if own.holds:
+            continue
+        other = "layer.tangential_compliance" if column == 0 else "layer.normal_compliance"
+
+        def distance(compliance: float) -> float:
+            try:
+                fields = solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}).fields(points)
+            except InputError:  # the contact is larger than the grid
+                return np.inf
+            if column == 1:
+                return _distance(examined, fields)
+            return float(judge.weights @ np.abs(examined.values[:, 0] - fields[:, 0]) / (judge.weights @ judge.reference[:, 0]))
+
+        found = [distance(compliance) for compliance in _SPRINGS]
+        best = int(np.argmin(found))
+        if 0 < best or found[best] < _EXPLAINS * own.value:
+            if found[best] < _EXPLAINS * own.value or found[best] <= own.allowed:
+                yield f"the penalty is soft: a {option} of about {1 / (_SPRINGS[best] * unit):.1g} Pa/m explains the field"
+
+
+def _kernels(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+    """Tries wrong kernels: the stick area of a solver moves rigidly under the kernel that it has."""
+    motion, scatter = examined.motion, examined.number("stick_motion")
+    if motion is None or scatter is None or "stick_motion" not in wrong:
+        return
+    judge, kernels = examined.judge, examined.kernels
+    assert kernels is not None and judge.bodies is not None
+
+    def scatter_with(bodies: Bodies, **mistake: Any) -> float:
+        u = kernels.displacement(bodies, **mistake)
+        return judge.rigid(kernels, u).scatter
+
+    no_poisson = {name: {**request[name], "poisson_ratio": 0.0} for name in ("upper", "lower")}
+    bodies = judge.bodies
+    tried = {"the cross kernel K12, odd in x1 and in x2, is mirrored as an even function": (bodies, {"even": True}),
+             "the cross kernel K12 is missing": (bodies, {"cross": 0.0}),
+             "the cross kernel K12 has the wrong sign": (bodies, {"cross": -1.0}),
+             "K11 and K22 are exchanged": (bodies, {"swapped": True}),
+             "Poisson's ratio is zero": (Bodies.of(no_poisson["upper"], no_poisson["lower"], bodies.spring), {})}
+    scatters = {name: scatter_with(kind, **mistake) for name, (kind, mistake) in tried.items()}
+    best = min(scatters, key=lambda name: scatters[name])
+    if scatters[best] < _EXPLAINS * scatter.value:
+        yield best
+
+
+def _directions(examined: Examined, wrong: set[str]) -> Iterator[str]:
+    if "slip_direction" in wrong and not wrong & {"friction", "radial_shear", "stick_motion"}:
+        yield "slipping points keep a direction that does not oppose their slip"

@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 
 from ..errors import InputError
-from .causes import causes_of
+from .causes import Solve, causes_of
 from .field import ContactField
 from .measures import Bodies, Law
 from .read import read
@@ -17,6 +17,8 @@ from .verdict import Examined, examine, percent
 
 #: Cells across the contact of the solve that a field is compared with, for each of its own faces; and their range.
 _FINER, _LEAST, _MOST = 3.0, 96, 384
+#: Cells across the contact of solves that repeat a mistake.
+_TRIAL = 96
 #: Other signs of both tractions are taken if they come closer to the right ones than this part of the field's own distance.
 _CLEARLY = 0.5
 
@@ -24,7 +26,7 @@ _CLEARLY = 0.5
 def answer(request: dict[str, Any]) -> dict[str, Any]:
     """The verdict on the field of a request (convergence/check/mesh_request.cpp)."""
     examined, notes = _examined(request)
-    causes = causes_of(examined, request) if examined.wrong else []
+    causes = causes_of(examined, request, _repeat(request, examined)) if examined.wrong else []
     good = not examined.wrong and not (request["strict"] and notes)
     undecided = good and not examined.shows
     if undecided:
@@ -39,12 +41,20 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     return {"exit_code": 0 if good else 1, "text": _text(result, examined), "result": result}
 
 
+def _repeat(request: Mapping[str, Any], examined: Examined) -> Solve:
+    def solve(keys: Mapping[str, Any]) -> Right:
+        extent = {"grid.extent": _extent(examined.field, examined.right)} if "layer.kind" in keys else {}
+        return _solved(request, {**keys, **extent}, _TRIAL)
+
+    return solve
+
+
 def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     field = read(request["field"], **_reading(request["read_as"]))
-    springs = _springs(request)
-    right = _right(request, springs, None)
+    right = _right(request, {}, None)
     field = in_units_of(field, right.contact_radius, right.normal_load)
     field, notes = _signed(field, right, any(word.startswith("body=") for word in request["read_as"]))
+    springs = _springs(request, field, right)
     across = 2 * right.contact_radius / np.sqrt(np.pi * right.contact_radius**2 / max(1, np.count_nonzero(field.pressure)))
     if request["exact"] is None or springs:
         right = _right(request, springs, int(np.clip(_FINER * across, _LEAST, _MOST)))
@@ -91,8 +101,8 @@ def _number(word: str, text: str) -> float:
         raise InputError(f"--read-as {word}: {text} is no number; allowed: centre=X1,X2") from None
 
 
-def _springs(request: Mapping[str, Any]) -> dict[str, Any]:
-    """The scene's keys of a layer that is as soft as the penalties."""
+def _springs(request: Mapping[str, Any], field: ContactField, right: Right) -> dict[str, Any]:
+    """The scene's keys of a layer that is as soft as the penalties, and of a grid on which the contact can grow."""
     slope, stiffness = request["stick_slope"], request["normal_stiffness"]
     for option, value in (("--stick-slope", slope), ("--normal-stiffness", stiffness)):
         if value is not None and not (value > 0 and np.isfinite(value)):
@@ -100,13 +110,23 @@ def _springs(request: Mapping[str, Any]) -> dict[str, Any]:
     if slope is None and stiffness is None:
         return {}
     return {"layer.kind": "winkler", "layer.normal_compliance": 1 / stiffness if stiffness else 0.0,
-            "layer.tangential_compliance": 1 / slope if slope else 0.0}
+            "layer.tangential_compliance": 1 / slope if slope else 0.0, "grid.extent": _extent(field, right)}
+
+
+def _extent(field: ContactField, right: Right) -> list[float]:
+    """Sides of a grid that leaves a third of the contact's size around it, m: with springs the solver does not know it in advance."""
+    reach = np.abs(field.points[right.fields(field.points)[:, 0] > 0]).max(initial=right.contact_radius)
+    return [float(8 / 3 * reach)] * 2
 
 
 def _right(request: Mapping[str, Any], springs: Mapping[str, Any], cells: Optional[int]) -> Right:
     if request["exact"] is not None and not springs:
         return exact_answer(request["exact"])
-    return solved_answer(request["scene"], request["overrides"], springs, cells)
+    return _solved(request, springs, cells)
+
+
+def _solved(request: Mapping[str, Any], keys: Mapping[str, Any], cells: Optional[int]) -> Right:
+    return solved_answer(request["scene"], request["overrides"], keys, cells)
 
 
 def _signed(field: ContactField, right: Right, given: bool) -> tuple[ContactField, list[str]]:

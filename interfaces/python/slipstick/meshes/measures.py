@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -154,12 +154,17 @@ class Judge:
         rows = self.slips & (field[:, 0] > _CARRIES * field[:, 0].max())
         return np.asarray(np.hypot(field[rows, 1], field[rows, 2]) / self.law.bound(field[rows, 0]))
 
-    def motion(self, kernels: Kernels, **mistakes: Any) -> Optional[Motion]:
-        """None: too few rows stick."""
+    def motion(self, kernels: Kernels) -> Optional[Motion]:
+        """The motion of the stick area. None: too few rows stick."""
         if self.bodies is None or kernels.sticks.sum() < _FEWEST:
             return None
+        return self.rigid(kernels, kernels.displacement(self.bodies))
+
+    @staticmethod
+    def rigid(kernels: Kernels, displacement: Array) -> Motion:
+        """The rigid motion that is closest to displacements (n, 2) of the rows that stick."""
         places, weights = kernels.places[kernels.sticks], np.sqrt(kernels.weights[kernels.sticks])
-        u = kernels.displacement(self.bodies, **mistakes)[kernels.sticks]
+        u = displacement[kernels.sticks]
         zero, one = np.zeros(len(places)), np.ones(len(places))
         matrix = np.concatenate([np.column_stack([one, zero, -places[:, 1]]), np.column_stack([zero, one, places[:, 0]])])
         both = np.concatenate([weights, weights])
