@@ -24,7 +24,9 @@ import numpy as np
 
 from ..errors import InputError
 from . import mesh as meshes
+from .exodus import read_exodus
 from .field import Array, ContactField, Indices
+from .frd import read_frd
 from .mesh import Mesh
 from .names import Arrays, Names, given_names
 from .surface import Axis, Faces, Frame, check_flat, contact_faces, counter_clockwise, face_areas, faces_of, frame_of, nodal_areas
@@ -35,7 +37,8 @@ from .vtu import read_vtu
 
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".tab", ".asc")
 _XML = (".vtu", ".vtp", ".pvtu", ".pvtp", ".pvd")
-_MESHIO = (".vtk", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med", ".msh", ".inp")
+_EXODUS = (".e", ".exo", ".ex2")
+_MESHIO = (".vtk", ".xdmf", ".xmf", ".med", ".msh", ".inp")
 
 
 def read(source: Any, *, kind: Optional[str] = None, names: Names = None, units: Optional[str] = None, body: Optional[str] = None,
@@ -74,25 +77,41 @@ def _loaded_file(path: Path) -> Mesh:
         return read_table(path)
     if ending in _XML:
         return read_vtu(path)
+    if ending == ".frd":
+        return read_frd(path)
+    if ending in _EXODUS:
+        return read_exodus(path)
     if ending == ".npz":
         with np.load(path) as arrays:
             return meshes.of_columns(dict(arrays), path.name)
     if ending in _MESHIO:
         return _by_meshio(path)
-    raise InputError(f"{path.name}: unknown extension; allowed: {', '.join((*_TABLES, '.npz', *_XML, *_MESHIO))}; many programs "
-                     "can write .vtu files or tables")
+    allowed = ", ".join((*_TABLES, ".npz", ".frd", *_XML, *_EXODUS, *_MESHIO))
+    raise InputError(f"{path.name}: unknown extension; allowed: {allowed}; many programs can write .vtu files or tables")
 
 
 def _by_meshio(path: Path) -> Mesh:
     import meshio  # type: ignore[import-not-found]
     try:
         with contextlib.redirect_stdout(sys.stderr):
+            if path.suffix.lower() in (".xdmf", ".xmf") and b"Temporal" in path.read_bytes():
+                return _last_of_series(meshio, path)
             return meshes.of_meshio(meshio.read(path))
     except ModuleNotFoundError:
         raise
     except (Exception, SystemExit) as error:  # its readers raise errors of many types, or exit
         raise InputError(f"{path.name}: meshio {meshio.__version__} cannot read it ({type(error).__name__}: {error}); allowed: "
                          "another file type, such as .vtu") from error
+
+
+def _last_of_series(meshio: Any, path: Path) -> Mesh:
+    """The last time step of an XDMF file."""
+    with meshio.xdmf.TimeSeriesReader(path) as series:
+        points, cells = series.read_points_cells()
+        time, point_data, cell_data = series.read_data(series.num_steps - 1)
+    mesh = meshes.of_meshio(meshio.Mesh(points, cells, point_data, cell_data))
+    mesh.said.append(f"Step: the last one of {series.num_steps}, at time {time:g}.")
+    return mesh
 
 
 def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactField:
@@ -222,10 +241,10 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
             loaded[one.nodes[on_faces[one.rows]]] = True
     frame = frame_of(mesh.points[loaded], options.axis, name)
     check_flat(mesh.points[loaded], frame, name)
-    chosen = contact_faces(faces, outer, mesh.points, loaded, frame, options.body == "upper")
+    chosen, owner = contact_faces(faces, outer, mesh.points, loaded, frame, options.body == "upper")
     vertices, of_types, nodes, rows = _in_plane(chosen, mesh.points, frame)
     vertices = vertices * units.size("length")
-    values = values_of(arrays.rows(rows if at_faces else nodes), frame, options, units, name)
+    values = values_of(arrays.rows(rows if at_faces else nodes), frame, options, units, name, owner)
     values.said += [frame.said(),
                     f"Mesh: {sum(map(len, of_types))} faces{' of solids' if outer else ''} with {len(vertices)} nodes."]
     if at_faces:

@@ -164,20 +164,25 @@ def check_flat(contact: Array, frame: Frame, source: str) -> None:
                          f"{height:.3g} over a size of {size:.3g}; allowed: at most a tenth of the size (another normal: axis)")
 
 
-def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array, frame: Frame, upper: bool) -> list[Faces]:
+def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array, frame: Frame,
+                  upper: bool) -> tuple[list[Faces], Optional[str]]:
     """The faces of the contact's surface. Of solids: faces with loaded nodes; if those of both bodies are loaded, the lower
-    body's or the upper one's. Of a file's own faces: those near the contact's plane. loaded (n): nodes with a pressure."""
+    body's or the upper one's. Of a file's own faces: those near the contact's plane. loaded (n): nodes with a pressure. Also the
+    body whose faces they are, "lower" or "upper", if solids show it."""
     contact = points[loaded]
     middle, size = (contact @ frame.x3).mean(), np.ptp(frame.in_plane(contact), axis=0).max()
     towards = [face.normals(points) @ frame.x3 for face in faces]
     near = [abs((points[face.corners()] @ frame.x3).mean(axis=1) - middle) < size for face in faces]
     flat = [(abs(cosine) > 0.8) & close for cosine, close in zip(towards, near)]
+    owner = None
     if outer:
         flat = [one & loaded[face.corners()].any(axis=1) for one, face in zip(flat, faces)]
         signs = np.concatenate([np.sign(cosine[one]) for cosine, one in zip(towards, flat)])
         if (signs > 0).any() and (signs < 0).any():
             flat = [one & (cosine * (-1 if upper else 1) > 0) for one, cosine in zip(flat, towards)]
-    return [face.chosen(one) for face, one in zip(faces, flat) if one.any()]
+        else:
+            owner = "lower" if (signs > 0).any() else "upper"
+    return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner
 
 
 def counter_clockwise(faces: Indices, vertices: Array) -> Indices:

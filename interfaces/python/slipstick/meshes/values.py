@@ -53,71 +53,84 @@ def loads(arrays: Arrays) -> Array:
     return np.nan_to_num(load)
 
 
-def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, source: str) -> Values:
-    """The values of all rows."""
-    said: list[str] = []
-    basis = options.basis or ("lower" if arrays.on_surface_tangents("q1") else "axes")
-    if arrays.on_surface_tangents("q1") and options.basis is None:
-        said.append("Basis: the shear's components lie along t1, the x axis projected on the surface, and t2 = n x t1, n the "
-                    "lower body's outward normal (CalculiX: the master's, Abaqus: the slave's).")
-    tangents = np.eye(2) if basis == "axes" else frame.tangents(of_upper=basis == "upper")
+@dataclass
+class _Extraction:
+    """Arrays of a file put into the frame and into SI units, with the choices made on the way."""
 
-    def in_frame(roles: tuple[str, str], vector_roles: tuple[str, ...], quantity: str) -> Optional[Array]:
-        """(n, 2): components along x1 and x2 of two arrays, or of the first vector that the file has."""
-        parts, columns = [arrays.scalar(role) for role in roles], [arrays.name_of(role) or "" for role in roles]
+    arrays: Arrays
+    frame: Frame
+    units: Units
+    tangents: Array  # (2, 2): components along x1 and x2 of the directions of q1 and q2
+    said: list[str] = field(default_factory=list)
+
+    def scalar(self, role: str, quantity: str) -> Optional[Array]:
+        """Numbers (n) in SI units; None: the file has none."""
+        column = self.arrays.name_of(role)
+        if column is None:
+            return None
+        self.units.note(quantity, [column])
+        return np.asarray(self.arrays.scalar(role)) * self.units.size(quantity, column)
+
+    def vectors(self, role: str, quantity: str) -> Optional[Array]:
+        """Vectors (n, 3) along the file's axes in SI units; None: the file has none."""
+        columns = self.arrays.components_of(role)
+        if not columns:
+            return None
+        self.units.note(quantity, columns)
+        return np.asarray(self.arrays.vector(role)) * self.units.size(quantity, columns[0])
+
+    def in_plane(self, roles: tuple[str, str], vector_roles: tuple[str, ...], quantity: str) -> Optional[Array]:
+        """(n, 2) along x1 and x2: two arrays, or the first vector that the file has."""
+        parts = [self.scalar(role, quantity) for role in roles]
         if parts[0] is not None and parts[1] is not None:
-            units.note(quantity, columns)
-            return np.stack([part * units.size(quantity, column) for part, column in zip(parts, columns)], axis=1) @ tangents
-        for role in vector_roles:
-            vectors = arrays.vector(role)
-            if vectors is not None:
-                units.note(quantity, arrays.components_of(role))
-                return frame.in_plane(vectors) * units.size(quantity, arrays.components_of(role)[0])
-        return None
+            return np.stack([parts[0], parts[1]], axis=1) @ self.tangents
+        vectors = [self.vectors(role, quantity) for role in vector_roles]
+        return next((self.frame.in_plane(found) for found in vectors if found is not None), None)
 
+    def pressure(self, are_forces: bool, body: str) -> tuple[Array, str]:
+        """Pressure or normal force (n), positive in compression, and the body on which the shear acts. Vectors show it: a
+        traction that presses against the normal acts on the lower body."""
+        quantity, name = ("force", "force") if are_forces else ("stress", "traction")
+        pressure = self.scalar("fn" if are_forces else "pressure", quantity)
+        if pressure is not None:
+            known = pressure[~np.isnan(pressure)]
+            if known.size and known.min() < 0 and known.max() <= -1e-9 * known.min():
+                self.said.append("Sign: the pressures are negative; they are turned, so that compression is positive.")
+                pressure = -pressure
+            self.said.append(f"Body: the shear acts on the {body} body" + (", and is turned." if body == "upper" else "."))
+            return pressure, body
+        along = np.asarray(self.vectors(name, quantity)) @ self.frame.x3
+        body = "upper" if np.nansum(along) > 0 else "lower"
+        self.said.append(f"Body: '{self.arrays.components_of(name)[0]}' acts on the {body} body, as it presses on it.")
+        return along if body == "upper" else -along, body
+
+
+def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, source: str, owner: Optional[str] = None) -> Values:
+    """The values of all rows. owner: the body whose faces have the values, if that is known. In CalculiX it is the slave, and
+    CSHEAR1 and CSHEAR2 act on the master, along tangents made with the master's normal."""
+    of_program = arrays.on_surface_tangents("q1")
+    master = "upper" if owner == "lower" and of_program else "lower"
+    basis = options.basis or (master if of_program else "axes")
+    found = _Extraction(arrays, frame, units, np.eye(2) if basis == "axes" else frame.tangents(of_upper=basis == "upper"))
+    if of_program and options.basis is None:
+        found.said.append("Basis: the shear's components lie along t1, the x axis projected on the surface, and t2 = n x t1, n "
+                          f"the {basis} body's outward normal (CalculiX: the master's, Abaqus: the slave's).")
     are_forces = arrays.name_of("pressure") is None and not arrays.components_of("traction")
-    quantity = "force" if are_forces else "stress"
-    normal = arrays.name_of("fn" if are_forces else "pressure")
-    vector = "force" if are_forces else "traction"
-    if normal is not None:
-        units.note(quantity, [normal])
-        pressure = _of(arrays.scalar("fn" if are_forces else "pressure")) * units.size(quantity, normal)
-        turned = pressure[~np.isnan(pressure)].max(initial=0) <= 0
-        if turned:
-            pressure = -pressure
-            said.append("Sign: all pressures are negative; compression is taken as positive and they are turned.")
-        on_upper = options.body == "upper"
-    else:
-        units.note(quantity, arrays.components_of(vector))
-        along = _of(arrays.vector(vector)) @ frame.x3 * units.size(quantity, arrays.components_of(vector)[0])
-        on_upper = bool(np.nansum(along) > 0)
-        pressure = along if on_upper else -along
-        said.append(f"Body: '{arrays.components_of(vector)[0]}' acts on the {'upper' if on_upper else 'lower'} body.")
+    pressure, body = found.pressure(are_forces, options.body or master)
     if are_forces:
-        traction = in_frame(("f1", "f2"), ("force",), quantity)
+        traction = found.in_plane(("f1", "f2"), ("force",), "force")
     else:
-        traction = in_frame(("q1", "q2"), ("shear", "traction"), quantity)
+        traction = found.in_plane(("q1", "q2"), ("shear", "traction"), "stress")
     if traction is None:
         raise InputError(f"{source}: it has no shear; it has {arrays.listed()}; allowed: q1 and q2, CSHEAR1 and CSHEAR2, a "
                          f"vector like tangent_traction, or {HOW_TO_NAME}")
-    if on_upper:
+    slip = found.in_plane(("slip1", "slip2"), ("slip",), "length")
+    if body == "upper":
         traction = -traction
-    if normal is not None:
-        said.append(f"Body: the shear acts on the {options.body or 'lower'} body" + (", and is turned." if on_upper else "."))
-    slip = in_frame(("slip1", "slip2"), ("slip",), "length")
-    if slip is not None and on_upper and arrays.on_surface_tangents("slip1"):
-        slip = -slip
-    gap = arrays.scalar("gap")
-    if gap is not None:
-        gap = gap * units.size("length", arrays.name_of("gap") or "")
-    values = Values(pressure, traction, are_forces, slip, gap, said)
+        slip = -slip if slip is not None and arrays.on_surface_tangents("slip1") else slip
+    values = Values(pressure, traction, are_forces, slip, found.scalar("gap", "length"), found.said)
     _clean(values, source)
     return values
-
-
-def _of(array: Optional[Array]) -> Array:
-    assert array is not None
-    return array
 
 
 def _clean(values: Values, source: str) -> None:
