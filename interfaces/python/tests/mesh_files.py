@@ -1,5 +1,7 @@
 """Meshes with the exact solution of a Hertz contact in torsion, and writers of files for them, for the tests of readers."""
 import base64
+import functools
+import importlib.util
 import lzma
 import zlib
 
@@ -60,8 +62,13 @@ MESHES = {"polar": polar(), "graded": polar(growth=0.6), "unstructured": unstruc
           **{name: quadratic(name) for name in ("triangle6", "quad8", "quad9")}}
 
 
+COMPRESSORS = {"vtkZLibDataCompressor": zlib.compress, "vtkLZMADataCompressor": lzma.compress}
+if importlib.util.find_spec("lz4"):
+    import lz4.block
+    COMPRESSORS["vtkLZ4DataCompressor"] = functools.partial(lz4.block.compress, store_size=False)
+
 VTK_TYPES = {"triangle": 5, "quad": 9, "triangle6": 22, "quad8": 23, "quad9": 28, "tetra": 10, "tetra10": 24, "hexahedron": 12,
-             "hexahedron20": 25, "wedge": 13, "wedge15": 26, "pyramid": 14}
+             "hexahedron20": 25, "wedge": 13, "wedge15": 26, "pyramid": 14, "polygon": 7}
 _EDGES = {4: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
           6: [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
           8: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
@@ -111,7 +118,7 @@ def frd(points, cells, contact):
 
 def vtu(points, cells, point_data, cell_data, form="ascii", compressor=None, header="<u4", pieces=1):
     """The text of a .vtu file. form: ascii, binary (inline), raw or base64 (appended)."""
-    blob, squeeze = bytearray(), {"vtkZLibDataCompressor": zlib.compress, "vtkLZMADataCompressor": lzma.compress}.get(compressor)
+    blob, squeeze = bytearray(), COMPRESSORS.get(compressor)
 
     def packed(data):
         if squeeze is None:

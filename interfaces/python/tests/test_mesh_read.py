@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from mesh_files import FRICTION, LOAD, MESHES, PEAK, RADIUS, VTK_TYPES, frd, solids, solution, vtu, write_exodus
+from mesh_files import COMPRESSORS, FRICTION, LOAD, MESHES, PEAK, RADIUS, VTK_TYPES, frd, solids, solution, vtu, write_exodus
 from scipy.spatial import ConvexHull
 from slipstick import InputError
 from slipstick.meshes.read import read
@@ -180,7 +180,7 @@ class MeshTest(ReadTest):
         points, cells = MESHES["polar"]
         expected = read(self.file("m.vtu", vtu(points, cells, self.point_data(points), {})))
         for form in ("binary", "raw", "base64"):
-            for compressor in (None, "vtkZLibDataCompressor", "vtkLZMADataCompressor"):
+            for compressor in (None, *COMPRESSORS):
                 for header, pieces in (("<u4", 1), ("<u8", 1), ("<u4", 3)):
                     with self.subTest(form=form, compressor=compressor, header=header, pieces=pieces):
                         content = vtu(points, cells, self.point_data(points), {}, form, compressor, header, pieces)
@@ -293,6 +293,12 @@ class MeshTest(ReadTest):
         self.assert_exact(read(self.file("all.pvtu", head.format("PUnstructuredGrid", '<Piece Source="late.vtu"/>'))))
 
     def test_polygons_of_vtp(self):
+        angle = np.pi / 3 * np.arange(6)
+        points = 0.9 * RADIUS * np.concatenate([[[0, 0]], np.stack([np.cos(angle), np.sin(angle)], axis=1)])
+        one_face = [("polygon", np.arange(1, 7)[None])]
+        field = read(self.file("m.vtu", vtu(points, one_face, self.point_data(points), {"p": np.ones(1), "q": np.ones((1, 2))})))
+        self.assertEqual([faces.shape for faces in field.faces], [(4, 3)])
+        self.assertAlmostEqual(field.area.sum() / (1.5 * np.sqrt(3) * (0.9 * RADIUS)**2), 1, places=12)
         points, cells = MESHES["polar"]
         text = vtu(points, cells, self.point_data(points), {}).replace(b"UnstructuredGrid", b"PolyData")
         self.assert_exact(read(self.file("m.vtp", text.replace(b"Cells>", b"Polys>"))))

@@ -42,7 +42,7 @@ _SURFACE_TANGENTS = ("cshear", "cslip")
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[\s_.-]", "", name.lower())
+    return re.sub(r"[\s_.:-]", "", name.lower())
 
 
 def given_names(names: Names) -> dict[str, str]:
@@ -97,7 +97,7 @@ class Arrays:
             whole = self._plain.get(base)
             if whole is not None and self._width(whole) in (2, 3):
                 return [whole]
-            for suffixes in ("xyz", (":0", ":1", ":2")):
+            for suffixes in ("xyz", "012"):
                 found = [self._plain[base + suffix] for suffix in suffixes if base + suffix in self._plain]
                 if len(found) > 1:
                     return found
@@ -117,6 +117,10 @@ class Arrays:
 
     def has_pressure(self) -> bool:
         return any(self.name_of(role) for role in ("pressure", "fn")) or any(self.components_of(r) for r in ("traction", "force"))
+
+    def has_shear(self) -> bool:
+        vectors = ("shear", "traction", "force")
+        return any(self.name_of(role) for role in ("q1", "f1")) or any(self.components_of(role) for role in vectors)
 
     def _numbers(self, name: str) -> Array:
         array = self._arrays[name]

@@ -7,7 +7,8 @@ from typing import Optional
 import numpy as np
 
 from ..errors import InputError
-from .field import ContactField
+from .field import Array, ContactField
+from .names import Arrays
 
 _SI = {
     "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254},
@@ -72,6 +73,15 @@ class Units:
         if quantity == "force" and force is None:
             return (stress or 1.0) * (length or 1.0)**2
         return self._general(quantity) or 1.0
+
+    def scaled(self, arrays: Arrays, role: str, quantity: str) -> Optional[Array]:
+        """The array of numbers (n) with this meaning in SI units; None: the source has none."""
+        column = arrays.name_of(role)
+        if column is None:
+            return None
+        if quantity != "area":
+            self.note(quantity, [column])
+        return np.asarray(arrays.scalar(role)) * self.size(quantity, column)
 
     def said(self) -> list[str]:
         """The units that are taken, and the ones that are not known."""

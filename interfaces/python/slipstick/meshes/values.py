@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy as np
+import numpy.typing as npt
 
 from ..errors import InputError
 from .field import KINDS, Array
 from .names import SCALARS, VECTORS, Arrays
-from .surface import Axis, Frame
+from .plane import Axis, Frame
 from .units import Units
 
 HOW_TO_NAME = 'names, as "pressure=NAME,q1=NAME,q2=NAME" (' + ", ".join((*SCALARS, *VECTORS)) + ")"
@@ -44,13 +45,14 @@ class Values:
     said: list[str] = field(default_factory=list)
 
 
-def loads(arrays: Arrays) -> Array:
-    """(n): pressure or normal force of each row; the length of its vector if the file has vectors only; zero for NaN."""
+def loaded(arrays: Arrays) -> npt.NDArray[np.bool_]:
+    """(n): rows with a pressure, a normal force or, if the source has vectors only, a vector that is more than rounding."""
     load = next((arrays.scalar(role) for role in ("pressure", "fn") if arrays.name_of(role)), None)
     if load is None:
         vectors = arrays.vector("traction")
         load = np.linalg.norm(arrays.vector("force") if vectors is None else vectors, axis=1)
-    return np.nan_to_num(load)
+    size = np.nan_to_num(abs(load))
+    return np.asarray(size > 1e-6 * size.max(initial=0))
 
 
 @dataclass
@@ -63,14 +65,6 @@ class _Extraction:
     tangents: Array  # (2, 2): components along x1 and x2 of the directions of q1 and q2
     said: list[str] = field(default_factory=list)
 
-    def scalar(self, role: str, quantity: str) -> Optional[Array]:
-        """Numbers (n) in SI units; None: the file has none."""
-        column = self.arrays.name_of(role)
-        if column is None:
-            return None
-        self.units.note(quantity, [column])
-        return np.asarray(self.arrays.scalar(role)) * self.units.size(quantity, column)
-
     def vectors(self, role: str, quantity: str) -> Optional[Array]:
         """Vectors (n, 3) along the file's axes in SI units; None: the file has none."""
         columns = self.arrays.components_of(role)
@@ -81,28 +75,30 @@ class _Extraction:
 
     def in_plane(self, roles: tuple[str, str], vector_roles: tuple[str, ...], quantity: str) -> Optional[Array]:
         """(n, 2) along x1 and x2: two arrays, or the first vector that the file has."""
-        parts = [self.scalar(role, quantity) for role in roles]
+        parts = [self.units.scaled(self.arrays, role, quantity) for role in roles]
         if parts[0] is not None and parts[1] is not None:
             return np.stack([parts[0], parts[1]], axis=1) @ self.tangents
         vectors = [self.vectors(role, quantity) for role in vector_roles]
         return next((self.frame.in_plane(found) for found in vectors if found is not None), None)
 
-    def pressure(self, are_forces: bool, body: str) -> tuple[Array, str]:
-        """Pressure or normal force (n), positive in compression, and the body on which the shear acts. Vectors show it: a
-        traction that presses against the normal acts on the lower body."""
+    def pressure(self, are_forces: bool, given: Optional[str], usual: str) -> tuple[Array, str]:
+        """Pressure or normal force (n), positive in compression, and the body on which the shear acts: the given one, the one
+        that vectors with a normal component press on, or the usual one."""
         quantity, name = ("force", "force") if are_forces else ("stress", "traction")
-        pressure = self.scalar("fn" if are_forces else "pressure", quantity)
-        if pressure is not None:
-            known = pressure[~np.isnan(pressure)]
-            if known.size and known.min() < 0 and known.max() <= -1e-9 * known.min():
-                self.said.append("Sign: the pressures are negative; they are turned, so that compression is positive.")
-                pressure = -pressure
-            self.said.append(f"Body: the shear acts on the {body} body" + (", and is turned." if body == "upper" else "."))
-            return pressure, body
-        along = np.asarray(self.vectors(name, quantity)) @ self.frame.x3
-        body = "upper" if np.nansum(along) > 0 else "lower"
-        self.said.append(f"Body: '{self.arrays.components_of(name)[0]}' acts on the {body} body, as it presses on it.")
-        return along if body == "upper" else -along, body
+        pressure = self.units.scaled(self.arrays, "fn" if are_forces else "pressure", quantity)
+        vectors = self.vectors(name, quantity)
+        upwards = np.zeros(0) if vectors is None else vectors @ self.frame.x3  # a traction on the upper body
+        if pressure is None:
+            pressure = upwards if np.nansum(upwards) > 0 else -upwards
+        known = pressure[~np.isnan(pressure)]
+        if known.size and known.min() < 0 and known.max() <= -1e-9 * known.min():
+            self.said.append("Sign: the pressures are negative; they are turned, so that compression is positive.")
+            pressure = -pressure
+        shown = abs(np.nansum(upwards)) > 0.5 * np.nansum(abs(pressure))
+        body = given or (("upper" if np.nansum(upwards) > 0 else "lower") if shown else usual)
+        reason = ", as the vectors press on it" if shown and not given else ""
+        self.said.append(f"Body: the shear acts on the {body} body{reason}{', and is turned.' if body == 'upper' else '.'}")
+        return pressure, body
 
 
 def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, source: str, owner: Optional[str] = None) -> Values:
@@ -115,8 +111,10 @@ def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, sour
     if of_program and options.basis is None:
         found.said.append("Basis: the shear's components lie along t1, the x axis projected on the surface, and t2 = n x t1, n "
                           f"the {basis} body's outward normal (CalculiX: the master's, Abaqus: the slave's).")
-    are_forces = arrays.name_of("pressure") is None and not arrays.components_of("traction")
-    pressure, body = found.pressure(are_forces, options.body or master)
+    has_forces = bool(arrays.name_of("fn") or arrays.components_of("force"))
+    has_stresses = bool(arrays.name_of("pressure") or arrays.components_of("traction"))
+    are_forces = has_forces and (options.kind == "forces" or not has_stresses)
+    pressure, body = found.pressure(are_forces, options.body, master)
     if are_forces:
         traction = found.in_plane(("f1", "f2"), ("force",), "force")
     else:
@@ -128,7 +126,7 @@ def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, sour
     if body == "upper":
         traction = -traction
         slip = -slip if slip is not None and arrays.on_surface_tangents("slip1") else slip
-    values = Values(pressure, traction, are_forces, slip, found.scalar("gap", "length"), found.said)
+    values = Values(pressure, traction, are_forces, slip, units.scaled(arrays, "gap", "length"), found.said)
     _clean(values, source)
     return values
 

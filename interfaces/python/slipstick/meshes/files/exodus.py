@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ...errors import InputError
 from .mesh import Blocks, Mesh, in_space
 
 _TYPES = {("TRI", 3): "triangle", ("TRI", 6): "triangle6", ("QUA", 4): "quad", ("QUA", 8): "quad8", ("QUA", 9): "quad9",

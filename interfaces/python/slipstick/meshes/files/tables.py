@@ -7,8 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..errors import InputError
-from .field import Array, Indices
+from ...errors import InputError
 from .mesh import Mesh
 
 _COMMENTS = ("#", "%", "//")
@@ -79,30 +78,3 @@ def read_table(path: Path) -> Mesh:
     named = [_named(word) for word in words]
     return Mesh(point_data={name: _column([row[i] for row in cells]) for i, (name, _) in enumerate(named)},
                 units={name: unit for name, unit in named if unit})
-
-
-def swept(radii: Array, pressure: Array, around: Array, outward: Array) -> tuple[Array, list[Indices], Array, Array]:
-    """Nodes (n, 2) on circles of these radii, the triangles and quadrilaterals between them, and the nodes' pressure and
-    tractions, from values on a radius: traction around the axis and away from it. Faces are about square at the contact's rim."""
-    contact = radii[pressure > 0]
-    inner = radii[radii <= contact.max()]
-    wanted = 2 * np.pi * contact.max() / np.median(np.diff(inner)) if len(inner) > 1 else 0
-    angles = int(max(36, min(wanted, 20000 / len(radii))))
-    angle = 2 * np.pi * np.arange(angles) / angles
-    axis, rings = radii[0] == 0, radii[radii > 0]
-    first = int(axis)
-    unit = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    turned = np.stack([-unit[:, 1], unit[:, 0]], axis=1)
-    on_rings = (rings[:, None, None] * unit).reshape(-1, 2)
-    shear = (around[first:, None, None] * turned + outward[first:, None, None] * unit).reshape(-1, 2)
-    if axis:
-        middle = pressure[0]
-    else:  # an even function of the radius through the first two values
-        slope = (pressure[1] - pressure[0]) / (rings[1]**2 - rings[0]**2) if len(rings) > 1 else 0.0
-        middle = pressure[0] - slope * rings[0]**2
-    place = 1 + np.arange(len(rings) * angles).reshape(-1, angles)
-    after = np.roll(place, -1, axis=1)
-    triangles = np.stack([np.zeros(angles, np.int64), place[0], after[0]], axis=1)
-    quads = np.stack([place[:-1], place[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
-    return (np.concatenate([np.zeros((1, 2)), on_rings]), [triangles, quads],
-            np.concatenate([[middle], np.repeat(pressure[first:], angles)]), np.concatenate([np.zeros((1, 2)), shear]))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
-from .field import Array, Indices
+from ...errors import InputError
+from ..field import Array, Indices
 from .mesh import Blocks, Mesh
 
 # Types of elements and their numbers of nodes; in two of them the vertical edges' middle nodes come before the top's.

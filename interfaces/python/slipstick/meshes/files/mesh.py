@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
-from .field import Array, Indices
+from ...errors import InputError
+from ..field import Array, Indices
 
 Blocks = list[tuple[str, Indices]]
 
 FACES = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8, "quad9": 9}
 _VTK = {5: "triangle", 22: "triangle6", 9: "quad", 23: "quad8", 28: "quad9", 10: "tetra", 24: "tetra10", 12: "hexahedron",
-        25: "hexahedron20", 29: "hexahedron27", 13: "wedge", 26: "wedge15", 14: "pyramid", 27: "pyramid13", 1: "vertex"}
+        25: "hexahedron20", 29: "hexahedron27", 13: "wedge", 26: "wedge15", 14: "pyramid", 27: "pyramid13", 1: "vertex",
+        2: "vertex", 3: "line", 4: "line", 21: "line"}
 # Types whose number of nodes varies: polygon, Lagrange triangle, quadrilateral, tetrahedron, hexahedron.
 _VTK_SIZED = {(7, 3): "triangle", (7, 4): "quad", (69, 3): "triangle", (69, 6): "triangle6", (70, 4): "quad", (70, 9): "quad9",
               (71, 4): "tetra", (71, 10): "tetra10", (72, 8): "hexahedron"}
@@ -53,15 +54,18 @@ def split_contact(data: Mapping[str, Any]) -> dict[str, Array]:
     return split
 
 
-def of_vtk_cells(types: Indices, sizes: Indices, connectivity: Indices) -> tuple[Blocks, list[Indices]]:
-    """Blocks of cells in VTK's numbers of types, and for each block the cells' places in the list. Other types are left out."""
+def _of_vtk_cells(types: Indices, sizes: Indices, connectivity: Indices) -> tuple[Blocks, list[Indices]]:
+    """Blocks of cells in VTK's numbers of types, and for each block the cells' places in the list. Polygons become triangles."""
     starts = np.cumsum(sizes) - sizes
-    blocks, places = [], []
+    blocks: Blocks = []
+    places = []
     for number, size in dict.fromkeys(zip(types.tolist(), sizes.tolist())):
-        name, order = _VTK_IN_RASTER_ORDER.get(number, (_VTK.get(number) or _VTK_SIZED.get((number, size)), np.arange(size)))
-        if name is not None:
-            of_type = np.flatnonzero((types == number) & (sizes == size))
-            blocks.append((name, connectivity[starts[of_type, None] + np.asarray(order)]))
+        name = _VTK.get(number) or _VTK_SIZED.get((number, size)) or f"VTK type {number} of {size} nodes"
+        name, order = _VTK_IN_RASTER_ORDER.get(number, (name, list(range(size))))
+        of_type = np.flatnonzero((types == number) & (sizes == size))
+        polygons = number == 7 and size > 4
+        for part in [[0, i, i + 1] for i in range(1, size - 1)] if polygons else [order]:
+            blocks.append(("triangle" if polygons else name, connectivity[starts[of_type, None] + np.asarray(part)]))
             places.append(of_type)
     return blocks, places
 
@@ -69,7 +73,7 @@ def of_vtk_cells(types: Indices, sizes: Indices, connectivity: Indices) -> tuple
 def of_vtk(points: Any, types: Any, sizes: Any, connectivity: Any, point_data: Mapping[str, Any],
            cell_data: Mapping[str, Any]) -> Mesh:
     """A mesh from VTK's arrays; each array of cell_data has one row a cell."""
-    blocks, places = of_vtk_cells(*(np.asarray(array, np.int64) for array in (types, sizes, connectivity)))
+    blocks, places = _of_vtk_cells(*(np.asarray(array, np.int64) for array in (types, sizes, connectivity)))
     return Mesh(in_space(points), blocks, split_contact(point_data),
                 {name: [array[place] for place in places] for name, array in split_contact(cell_data).items()})
 

@@ -10,7 +10,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..errors import InputError
+from ...errors import InputError
 from .mesh import Mesh, of_vtk
 
 _SECTIONS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6}  # of .vtp, in the order of the cell data
