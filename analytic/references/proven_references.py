@@ -30,9 +30,9 @@ getcontext().prec = 2 * COST_DIGITS
 SMALL = [1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 0.01, 0.05]
 MIDDLE = [0.1, 0.2, 0.3, 0.4, 0.5, 0.53, 0.6, 0.7, 0.8, 0.85, 0.9]
 LARGE = [0.95, 0.99, 0.994, 0.999, 0.9999, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12]
-VALUES = {"moment_deficit": [1e-36, 1e-24, 1e-18] + SMALL + MIDDLE + LARGE, "moment_ratio": SMALL + MIDDLE + LARGE,
-          "stick_complement": [1e-30, 1e-18] + SMALL + MIDDLE + LARGE, "stick_ratio": SMALL + MIDDLE + LARGE,
-          "twist": SMALL + MIDDLE + [1.0, 1.5, 2.0, 3.0, 5.0]}
+VALUES = {"moment_deficit": [1e-90, 1e-36, 1e-24, 1e-18] + SMALL + MIDDLE + LARGE, "moment_ratio": [1e-100] + SMALL + MIDDLE + LARGE,
+          "stick_complement": [1e-300, 1e-100, 1e-30, 1e-18] + SMALL + MIDDLE + LARGE,
+          "stick_ratio": [1e-100, 1e-30] + SMALL + MIDDLE + LARGE, "twist": [1e-100] + SMALL + MIDDLE + [1.0, 1.5, 2.0, 3.0, 5.0]}
 # Both sides of where a flat punch begins to slip, M/M_lim = 8/(3 pi).
 PUNCH_VALUES = {"moment_deficit": [0.16, 0.152, 0.1512, 0.15117364, 0.15117363, 0.1511, 0.151, 0.14, 0.13],
                 "moment_ratio": [0.84, 0.848, 0.8488, 0.84882636, 0.84882637, 0.8489, 0.849, 0.86, 0.87],

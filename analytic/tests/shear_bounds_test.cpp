@@ -81,35 +81,6 @@ TEST(ShearBounds, HaveTheClosedFormsOfTheSquare) {
   }
 }
 
-TEST(ConstantBound, HasTheElementaryValuesOfHalfTheRadius) {
-  const TorsionState half = from_stick_ratio(0.5, constant_bound_profile());
-  EXPECT_LE(relative_error(half.moment_ratio, 2.0 / 3 + std::sqrt(3.0) / (2 * pi)), 4 * kEps);
-  EXPECT_LE(relative_error(half.twist, std::log(2 + std::sqrt(3.0)) / (2 * pi)), 4 * kEps);
-  EXPECT_LE(relative_error(traction(half, 0.25, constant_bound_profile()), 2 / pi * std::atan(0.25 / 0.5)),
-            8 * kEps);
-  EXPECT_EQ(traction(half, 0.75, constant_bound_profile()), 1);
-}
-
-/// Both ends: 1 - c ~ (pi m)^2/32 as m = M/M_lim falls, 1 - m ~ 4 c^3/(3 pi) as it rises; and full stick in
-/// between these and nothing, phi = M/(16/3 G a^3).
-TEST(ConstantBound, FollowsItsAsymptotes) {
-  const Profile& constant = constant_bound_profile();
-  for (const double m : {1e-4, 1e-8, 1e-60, 1e-140}) {
-    const TorsionState state = from_moment_ratio(m, constant);
-    EXPECT_LE(relative_error(state.stick_complement, pi * pi * m * m / 32), 2 * m + 8 * kEps) << m;
-    EXPECT_LE(relative_error(state.twist, 2.0 / 3 * m * 3 / 16), m * m + 8 * kEps) << m;
-    EXPECT_LE(relative_error(from_twist(state.twist, constant).moment_ratio, m), 16 * kEps) << m;
-  }
-  const TorsionState tiny = from_moment_ratio(1e-300, constant);
-  EXPECT_EQ(tiny.stick_ratio, 1);
-  EXPECT_LE(relative_error(tiny.twist, 1e-300 / 8), 8 * kEps);
-  EXPECT_LE(relative_error(from_twist(tiny.twist, constant).moment_ratio, 1e-300), 8 * kEps);
-  for (const double d : {1e-6, 1e-20, 1e-100}) {
-    const TorsionState state = from_moment_deficit(d, constant);
-    EXPECT_LE(relative_error(state.stick_ratio, std::cbrt(3 * pi * d / 4)), std::cbrt(d * d) + 8 * kEps) << d;
-  }
-}
-
 TEST(ShearBounds, GoForthAndBackByLoadDeficitAndTwist) {
   std::vector<std::unique_ptr<const Profile>> profiles;
   for (const double cap : {0.01, 0.5}) profiles.push_back(capped_hertz_profile(cap));
