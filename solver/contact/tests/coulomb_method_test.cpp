@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -159,26 +158,6 @@ TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
   }
 }
 
-TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
-  const CoulombBench bench(12, 12);
-  const TangentialSolution solution = solve_by_coulomb_method(
-      bench.elasticity, bench.grid, under_twist(ArrayXd::Zero(bench.grid.cells()), 0.1));
-  EXPECT_EQ(solution.status, Status::converged);
-  EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
-}
-
-TEST(CoulombLoads, ThatAreNoNumbersAreRefused) {
-  const CoulombBench bench(12, 12);
-  for (const auto& pair : {std::array{std::nan(""), 0.0}, std::array{0.0, std::nan("")}}) {
-    TangentialProblem forced = under_twist(bench.bound, 0.1);
-    forced.force = pair;
-    EXPECT_THROW(solve_by_coulomb_method(bench.elasticity, bench.grid, forced), std::invalid_argument);
-    TangentialProblem moved = under_twist(bench.bound, 0.1);
-    moved.displacement = pair;
-    EXPECT_THROW(solve_by_coulomb_method(bench.elasticity, bench.grid, moved), std::invalid_argument);
-  }
-}
-
 TEST(CoulombWork, ThatDoesNotSufficeIsSaidWithTheGapThatIsLeft) {
   const CoulombBench bench(24, 24);
   const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
@@ -200,17 +179,6 @@ TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_NEAR(bench.moment_of(solution) / bench.limit, 1.0, 1e-6);
   EXPECT_LE((solution.stick > 0.0).count(), 1);
-}
-
-/// Friction and moment times a factor: tractions, displacements and twist times that factor.
-TEST(CoulombLoads, AreScaledByFriction) {
-  CoulombBench bench(24, 24);
-  const TangentialSolution one = bench.solve(0.6, 1e-12);
-  bench.bound *= 1024.0;
-  bench.limit *= 1024.0;
-  const TangentialSolution many = bench.solve(0.6, 1e-12);
-  EXPECT_LE(relative_difference(many.traction / 1024.0, one.traction), 1e-9);
-  EXPECT_NEAR(many.twist / one.twist / 1024.0, 1.0, kRounding);
 }
 
 /// The pressure's displacement (dissimilar bodies) enters as in Eq. (12): a rigid rotation in it is a twist.

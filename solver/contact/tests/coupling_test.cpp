@@ -5,7 +5,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
-#include "solver/grid/reduction.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
@@ -52,32 +51,6 @@ TEST(ShearKernel, IsReciprocalToThePressures) {
       EXPECT_NEAR((q * along).sum(), (p * normal).sum(), 1e-13 * scale);
       EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), *law), q) + normal).abs().maxCoeff(),
                   0.0, 1e-13 * largest(normal));
-    }
-  }
-}
-
-/// K13 is odd in x1 and even in x2, K23 even in x1 and odd in x2. Far off they equal a point load's: pressure
-/// draws a compressible surface towards itself (Johnson 1985, Eq. 3.18), in relation to a rigid one.
-TEST(CouplingKernel, IsOddAndDrawsInwards) {
-  const Grid grid{41, 41, 1.0, 1.0};
-  const HalfSpaces law(elastic_pair({1.0, 0.25}, {kInfinity, 0.0}));
-  const auto op = make_operator(OperatorKind::dcfft, grid, coupling_kernel(), law);
-  ArrayXd p = ArrayXd::Zero(grid.cells());
-  p[20 * 41 + 20] = 1.0;
-  const ArrayXd u = applied(*op, p);
-  const auto at = [&](Index component, Index i, Index j) {
-    return u[component * grid.cells() + (20 + i) * grid.n2 + 20 + j];
-  };
-  for (Index i = 0; i <= 20; ++i) {
-    for (Index j = 0; j <= 20; ++j) {
-      const double tolerance = 1e-13 * largest(u);
-      EXPECT_NEAR(at(0, i, j), -at(0, -i, j), tolerance);
-      EXPECT_NEAR(at(0, i, j), at(0, i, -j), tolerance);
-      EXPECT_NEAR(at(1, i, j), at(0, j, i), tolerance);
-      const auto rho_square = static_cast<double>(i * i + j * j);
-      if (rho_square < 100.0) continue;
-      const double point = -(1.0 - 2.0 * 0.25) / (4.0 * pi) * static_cast<double>(i) / rho_square;
-      EXPECT_NEAR(at(0, i, j), point, 1e-3 * std::abs(0.5 / (4.0 * pi * std::sqrt(rho_square))));
     }
   }
 }
@@ -134,20 +107,6 @@ std::string coupling_name(const testing::TestParamInfo<Coupling>& tested) {
 class Exchange : public testing::TestWithParam<Coupling> {};
 INSTANTIATE_TEST_SUITE_P(Coupling, Exchange, testing::Values(Coupling::pressure, Coupling::full),
                          coupling_name);
-
-/// The mismatch changes its sign, and with it the shear by pressure; what shear of the other sign does to the
-/// gap is then the same.
-TEST_P(Exchange, ReversesTheShearByPressure) {
-  Scene scene = dissimilar(GetParam(), 0.0);
-  const ModelSolution one = solved(scene);
-  std::swap(scene.lower, scene.upper);
-  const ModelSolution other = solved(scene);
-  EXPECT_LE(relative_difference(other.normal.pressure, one.normal.pressure), kSame);
-  EXPECT_LE(relative_difference(other.tangential.traction, -one.tangential.traction), kSame);
-  EXPECT_EQ(other.stick_cells, one.stick_cells);
-  EXPECT_GT(one.stick_cells, 10);
-  EXPECT_LT(one.stick_cells, one.contact_cells - 10);
-}
 
 /// Under a moment too: the exchanged answer is minus the answer to the opposite moment, which is the mirror
 /// image about x1 = 0 of the answer to the moment, with q1 mirrored and q2 mirrored and reversed.
@@ -324,42 +283,6 @@ TEST(SpenceScenes, CostFewApplications) {
   solve_in_model_units(sphere,
                        [&](const ModelSolution& step) { applications += step.operator_applications; });
   EXPECT_LE(applications, 300.0);
-}
-
-/// Mean stick ratio over the end of a sphere's loading, each step by the same factor, from a 64th of the
-/// load.
-double late_stick_ratio(Coupling coupling, Index cells, int steps) {
-  Scene scene = spence(Shape::sphere, coupling, cells);
-  scene.solver.tolerance = 1e-6;
-  const double load = *scene.steps[0].normal;
-  scene.steps.resize(static_cast<std::size_t>(steps) + 1, scene.steps[0]);
-  for (int i = 0; i <= steps; ++i) {
-    scene.steps[static_cast<std::size_t>(i)].normal =
-        load * std::pow(64.0, static_cast<double>(i) / steps - 1.0);
-  }
-  double sum = 0.0;
-  int count = 0;
-  const ModelSolution last = solve_in_model_units(scene, [&](const ModelSolution& solution) {
-    if (!(*solution.loads.normal > 0.2 * load)) return;
-    EXPECT_EQ(solution.stick_radius, solution.stick_radius_counted);
-    EXPECT_NE(solution.stick_radius_note, "");
-    sum += counted_stick_ratio(solution);
-    ++count;
-  });
-  EXPECT_EQ(last.status, Status::converged) << last.message;
-  return sum / count;
-}
-
-/// A sphere's contact grows, its stick ratio stays: the limit of many steps is the punch's ratio (Spence
-/// 1968). A step lets the cells that it brings into contact slip from its start: first order.
-TEST_P(Spence, HoldsInEachStepOfAGrowingContact) {
-  const Index cells = GetParam() == Coupling::full ? 32 : 48;
-  const double few = late_stick_ratio(GetParam(), cells, 10);
-  const double many = late_stick_ratio(GetParam(), cells, 20);
-  const double exact = exact_stick_ratio(GetParam());
-  EXPECT_LT(few, many);
-  EXPECT_LT(many, exact);
-  EXPECT_NEAR(2.0 * many - few, exact, 0.5 * 2.0 / static_cast<double>(cells)) << "a quarter of a cell";
 }
 
 /// With friction enough to hold everything a punch is bonded: stiffer than without friction by ln(3 - 4 nu)

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/tests/limits.hpp"
 #include "solver/tests/model_units.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
@@ -99,8 +100,7 @@ TEST(Breakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
 
 TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
   const Bench bench(24);
-  for (const double factor :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double factor : {kNaN, kInfinity}) {
     Multiple broken(bench.model.grid, factor);
     const TangentialSolution solution =
         solve_by_paper_method(broken, under_moment(bench.bound, 0.5 * bench.limit));
@@ -130,35 +130,32 @@ TEST(Breakdown, OfAnEmptyStickAreaIsNamed) {
   EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, 1.0, 1e-3);
 }
 
-TEST(BadTangentialProblem, ThrowsForBoundsThatAreNegativeOrNotFinite) {
+/// Both methods ask the same of a problem.
+TEST(BadTangentialProblem, IsRefusedByEachMethod) {
   const Bench bench(8);
-  for (const double value :
-       {-1e-300, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    ArrayXd bound = bench.bound;
-    bound[27] = value;
-    EXPECT_THROW(solve_by_paper_method(*bench.op, under_moment(bound, 0.1 * bench.limit)),
-                 std::invalid_argument)
-        << value;
+  const TangentialProblem good = under_twist(bench.bound, 0.1);
+  std::vector<TangentialProblem> bad(2, good);
+  bad[0].moment = 0.0;
+  bad[1].twist = std::nullopt;
+  for (const double value : {kNaN, kInfinity, -1e-300}) {
+    bad.push_back(good);
+    bad.back().friction_bound[27] = value;
+    if (value < 0.0) continue;
+    bad.push_back(under_twist(bench.bound, value));
+    bad.insert(bad.end(), 2, good);
+    (bad.end() - 1)->force = std::array{value, 0.0};
+    (bad.end() - 2)->displacement = std::array{0.0, value};
   }
-}
-
-TEST(BadTangentialProblem, ThrowsUnlessOneLoadIsGiven) {
-  const Bench bench(8);
-  TangentialProblem problem = under_moment(bench.bound, 0.0);
-  problem.twist = 0.0;
-  EXPECT_THROW(solve_by_paper_method(*bench.op, problem), std::invalid_argument);
-  problem.moment = problem.twist = std::nullopt;
-  EXPECT_THROW(solve_by_paper_method(*bench.op, problem), std::invalid_argument);
-  for (const double twist :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(solve_by_paper_method(*bench.op, under_twist(bench.bound, twist)), std::invalid_argument);
+  const Elasticity elasticity{bench.model.law};
+  for (const TangentialProblem& problem : bad) {
+    EXPECT_THROW(solve_by_paper_method(*bench.op, problem), std::invalid_argument);
+    EXPECT_THROW(solve_by_coulomb_method(elasticity, bench.model.grid, problem), std::invalid_argument);
   }
 }
 
 TEST(BadTangentialProblem, ThrowsForGrossSlipAndSaysTheLimit) {
   const Bench bench(8);
-  for (const double moment :
-       {bench.limit, -bench.limit, 1.5 * bench.limit, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double moment : {bench.limit, -bench.limit, 1.5 * bench.limit, kNaN}) {
     try {
       solve_by_paper_method(*bench.op, under_moment(bench.bound, moment));
       ADD_FAILURE() << "no exception for a moment of " << moment;

@@ -142,12 +142,6 @@ TEST(StickFront, IsFittedOnAllRaysOfARingOfNearlyFourCells) {
   EXPECT_LT(std::abs(front.radius - 0.5), std::abs(front.counted_radius - 0.5));
 }
 
-/// Slip in a wide ring round few cells bends too much for the straight line that would have to do.
-TEST(StickFront, OnCoarseMeshesIsNoWorseThanCounting) {
-  const Errors errors = worst({.ring = 1.55}, 32);
-  EXPECT_LE(errors.fitted, errors.counted);
-}
-
 /// The jump of the angle on one of the axes does not matter either.
 TEST_P(MadeUpFront, TurnsWithTheContact) {
   constexpr Index n = 64;
