@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "solver/allocations/allocations.hpp"
@@ -280,60 +278,6 @@ TEST(Convolution, RefusesAKernelOfAnotherShape) {
     EXPECT_THROW(make_operator(OperatorKind::dcfft, {4, 4, 1.0, 1.0}, kernel, dissimilar_pair()),
                  std::invalid_argument);
   }
-}
-
-/// Means over cells of the traction under a bonded circular punch that is twisted by phi (Reissner and Sagoci
-/// 1944): q = (4 G phi/pi) (-x2, x1)/sqrt(a^2 - r^2) = (4 G phi/pi) (d/dx2, -d/dx1) sqrt(a^2 - r^2).
-ArrayXd bonded_punch_traction(const Grid& grid, double a) {
-  // Integral of sqrt(a^2 - x^2 - y^2) over x from low to high, zero outside the circle.
-  const auto chord = [a](double low, double high, double y) {
-    const double square = a * a - y * y;
-    if (square <= 0.0) return 0.0;
-    const double half = std::sqrt(square);
-    const auto primitive = [half](double x) {
-      const double s = std::clamp(x / half, -1.0, 1.0);
-      return 0.5 * half * half * (s * std::sqrt(1.0 - s * s) + std::asin(s));
-    };
-    return primitive(high) - primitive(low);
-  };
-  ArrayXd q(2 * grid.cells());
-  const double factor = 4.0 / std::numbers::pi / grid.cell_area();  // G phi = 1
-  for (Index i = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j) {
-      const double left = grid.x1(i) - 0.5 * grid.h1;
-      const double low = grid.x2(j) - 0.5 * grid.h2;
-      const double right = left + grid.h1;
-      const double high = low + grid.h2;
-      q[i * grid.n2 + j] = factor * (chord(left, right, high) - chord(left, right, low));
-      q[grid.cells() + i * grid.n2 + j] = -factor * (chord(low, high, right) - chord(low, high, left));
-    }
-  }
-  return q;
-}
-
-TEST(BondedPunch, TurnsAsReissnerAndSagociSay) {
-  double previous = std::numeric_limits<double>::infinity();
-  for (const Index n : {32, 64, 128}) {
-    const double a = 1.0;
-    const Grid grid{n, n, 2.0 * a / static_cast<double>(n), 2.0 * a / static_cast<double>(n)};
-    const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(),
-                                  *half_spaces({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0}));
-    const ArrayXd q = bonded_punch_traction(grid, a);
-    const ArrayXd t = rotation_field(grid);
-    // The sum of x times q over cells replaces the moment's integral; its error is of second order in h,
-    // times the logarithm of the edge's singularity.
-    const double moment = (q * t).sum() * grid.cell_area();
-    EXPECT_NEAR(moment / (16.0 / 3.0), 1.0, 4.0 * grid.h1 * grid.h1 / (a * a));
-
-    const ArrayXd u = applied(*op, q);
-    const ArrayXd r = (cell_x1(grid).square() + cell_x2(grid).square()).sqrt();
-    const ArrayXd inside = (r < 0.8 * a).cast<double>().replicate(2, 1);  // away from the edge's singularity
-    const double error = std::sqrt((inside * (u - t)).square().sum() / (inside * t).square().sum());
-    EXPECT_LT(error, previous / 2.0);
-    previous = error;
-  }
-  // Measured 9e-5 at 128 cells. A wrong sign or factor in any component leaves more than 1e-2.
-  EXPECT_LT(previous, 3e-4);
 }
 
 }  // namespace

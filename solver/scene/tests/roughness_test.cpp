@@ -109,24 +109,6 @@ TEST(Roughness, IsTheSameOnEveryMesh) {
   }
 }
 
-TEST(Roughness, OfAnotherSeedHasTheSameSpectrum) {
-  Roughness roughness = rough();
-  const Grid grid = over_a_period(roughness, 40);
-  const ArrayXd one = roughness_heights(roughness, grid);
-  const RoughnessSpectrum of_one = measure_spectrum(roughness);
-  roughness.seed += 1;
-  const ArrayXd other = roughness_heights(roughness, grid);
-  const RoughnessSpectrum of_other = measure_spectrum(roughness);
-  // Two of them are as good as independent: some 300 waves correlate by a part of 1/sqrt(300), weighted to
-  // the long ones.
-  EXPECT_LE(std::abs((one * other).sum()), 0.5 * std::sqrt(one.square().sum() * other.square().sum()));
-  EXPECT_NEAR(of_other.rms_height / of_one.rms_height, 1.0, kHeightRounding);
-  ASSERT_EQ(of_other.rings.size(), of_one.rings.size());
-  for (std::size_t i = 0; i < of_one.rings.size(); ++i) {
-    EXPECT_NEAR(of_other.rings[i].power / of_one.rings[i].power, 1.0, 1e-9);
-  }
-}
-
 /// Waves are orthogonal over a period: what the finer surface has of the coarser one is its long waves.
 TEST(Roughness, KeepsItsLongWavesWhereShorterOnesAreAdded) {
   Roughness roughness = rough();

@@ -92,18 +92,6 @@ TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
   }
 }
 
-TEST(Resolution, NearGrossSlipTurnsFromGoodToPoor) {
-  double last = 0.0;
-  for (const double missing : {0.1, 1e-2, 1e-4, 1e-6}) {
-    const ModelSolution solution = solve_in_model_units(paper_scene(32, 1.0 - missing));
-    ASSERT_EQ(solution.status, Status::converged);
-    EXPECT_GT(solution.resolution.uncertainty, last);
-    last = solution.resolution.uncertainty;
-  }
-  EXPECT_GT(last, kPoorlyResolved);
-  EXPECT_LT(solve_in_model_units(paper_scene(32, 0.5)).resolution.uncertainty, 0.02);
-}
-
 TEST(Resolution, OfAnImposedTwistIsTheMeshAlone) {
   Scene scene = paper_scene(32, 0.0);
   scene.steps[0].torsion = Twist{1.0};  // far beyond where all has slipped

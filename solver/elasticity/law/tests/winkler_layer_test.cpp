@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <array>
-#include <cmath>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/tests/fields.hpp"
@@ -52,20 +51,6 @@ TEST(WinklerLayer, HasTheSameComplianceForSmoothCellTractions) {
 
 const std::vector<PlaneWave> kWaves{
     {0.0, 0.0, 0.1}, {0.3, 0.0, 0.3}, {0.0, 2.0, 2.0}, {0.5, -1.2, 1.3}, {3.0, 4.0, 5.0}};
-
-TEST(WinklerLayer, WithoutComplianceIsTheBodiesToTheLastBit) {
-  const WinklerLayer none(bodies(), 0.0, 0.0);
-  const Grid offsets{9, 7, 1.0, 1.0};
-  EXPECT_EQ(none.influence_tables(kAllComponents, offsets),
-            bodies()->influence_tables(kAllComponents, offsets));
-  EXPECT_EQ(none.least_eigenvalue(1.0, 0.5), bodies()->least_eigenvalue(1.0, 0.5));
-  for (const bool tangential : {false, true}) {
-    std::vector<Symbol> with(kWaves.size()), without(kWaves.size());
-    none.inverse_symbols(tangential, 1.0, 1.0, kWaves, with);
-    bodies()->inverse_symbols(tangential, 1.0, 1.0, kWaves, without);
-    EXPECT_EQ(with, without);
-  }
-}
 
 TEST(WinklerLayer, AddsItsComplianceToTheSymbol) {
   for (const double softer : {1.0, 1e6}) {
