@@ -1,7 +1,5 @@
 // Where the two sides meet: numerical answers against exact ones.
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,7 +9,6 @@
 #include "convergence/results/make_record.hpp"
 #include "convergence/results/record_text.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
@@ -46,36 +43,6 @@ TEST(Comparison, AFlatBodyFallsWithTheMesh) {
   EXPECT_LE(fine.traction.at_centres.l1, kTractionAt128);
   EXPECT_LE(std::abs(fine.stick_radius), 5e-3);   // half a cell of 60 to the radius
   EXPECT_LE(std::abs(fine.peak_pressure), 1e-3);  // h^2, at a peak that a cell may miss by half of it
-}
-
-/// Exact fields stand where the body stands: cells about its axis are found as mirror images, others are not.
-TEST(Comparison, OfABodyOffTheOrigin) {
-  for (const char* const file : {"paper", "mindlin"}) {
-    for (const int n : {40, 41}) {
-      const double extent = 5e-5 * n;  // cells of 0.05 mm: shifted by two and by four
-      const solver::Scene shifted =
-          example(file, {fmt::format("grid.cells=[{}, {}]", n, n),
-                         fmt::format("grid.extent=[{}, {}]", extent, extent), "upper.at=[1e-4, -2e-4]"});
-      solver::Scene centred = shifted;
-      centred.surfaces.front().at = {0.0, 0.0};
-      const ExactFields there =
-          exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted).grid_in_m());
-      const ExactFields here =
-          exact_fields(*find_oracle(centred).oracle, solver::make_model(centred).grid_in_m());
-      const double close = 1e-11 * here.traction.abs().maxCoeff();
-      for (int i = 0; i < n - 2; ++i) {
-        for (int j = 4; j < n; ++j) {
-          const int from = i * n + j;
-          const int to = (i + 2) * n + j - 4;
-          EXPECT_NEAR(there.radius[to], here.radius[from], 1e-12 * extent);
-          EXPECT_NEAR(there.pressure[to], here.pressure[from], 1e-11 * here.pressure.maxCoeff());
-          for (const int component : {0, n * n}) {
-            EXPECT_NEAR(there.traction[component + to], here.traction[component + from], close) << file;
-          }
-        }
-      }
-    }
-  }
 }
 
 /// A solution that is the exact one but for a part of one number shows that part, along either axis.

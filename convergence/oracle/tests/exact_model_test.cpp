@@ -59,31 +59,6 @@ TEST(ExactModel, GivesTheNumbersOfTheExactSolution) {
   }
 }
 
-solver::Scene in_units(solver::Scene scene, double metre, double newton) {
-  const double pascal = newton / (metre * metre);
-  scene.surfaces.front().radius *= metre;
-  scene.upper.young_modulus *= pascal;
-  scene.lower.young_modulus *= pascal;
-  scene.steps[0].normal = *scene.steps[0].normal * newton;
-  return scene;
-}
-
-TEST(ExactModel, DoesNotKnowTheUnits) {
-  for (const std::string& name : kBodies) {
-    const Json si = answer(exact_scene(name));
-    for (const auto& [metre, newton] : {std::pair(1e3, 1.0), std::pair(1e9, 1e9), std::pair(1e-3, 1e-6)}) {
-      const Json other = answer(in_units(exact_scene(name), metre, newton));
-      for (const char* key : {"stick_ratio", "moment_ratio", "twist"}) {
-        EXPECT_EQ(number(other, key), number(si, key)) << name;  // the load decides these
-      }
-      EXPECT_NEAR(number(other, "twist_angle") / number(si, "twist_angle"), 1.0, kTolerance) << name;
-      EXPECT_NEAR(number(other, "contact_radius") / (metre * number(si, "contact_radius")), 1.0, kTolerance);
-      EXPECT_NEAR(number(other, "approach") / (metre * number(si, "approach")), 1.0, kTolerance);
-      EXPECT_NEAR(number(other, "moment") / (newton * metre * number(si, "moment")), 1.0, kTolerance);
-    }
-  }
-}
-
 TEST(ExactModel, SaysThatThereIsNoGrid) {
   for (const std::string& name : kBodies) {
     const Json result = answer(exact_scene(name));

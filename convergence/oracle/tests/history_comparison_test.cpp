@@ -223,40 +223,6 @@ TEST(HistoryComparison, EnergyLostUnderAChangingNormalLoadNeedsSmallSteps) {
 
 // ------------------------------------------------------------------ torsion and force
 
-Solution twisted_and_pushed(double ratio, const std::array<double, 2>& force) {
-  Scene scene = on_cells(twisted(steel(), {ratio}), 64);
-  scene.steps.front().force = force;
-  const Solution solution = solver::solve(scene);
-  EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-  EXPECT_LE(solution.certificate.gap, scene.solver.tolerance);
-  EXPECT_LE(solution.certificate.moment, 1e-12);
-  EXPECT_LE(solution.certificate.force, 1e-12);
-  EXPECT_LE(solution.certificate.friction_bound, 1e-12);
-  return solution;
-}
-
-/// By symmetry: a quarter turn of the force turns the displacement with it; the opposite force gives the
-/// opposite displacement and the same twist; a small force changes the twist by its square.
-TEST(HistoryComparison, ASmallForceBesideTorsion) {
-  const Solution alone = twisted_and_pushed(0.7, {0.0, 0.0});
-  const Solution along_1 = twisted_and_pushed(0.7, {10.0, 0.0});
-  const Solution along_2 = twisted_and_pushed(0.7, {0.0, 10.0});
-  const Solution against_1 = twisted_and_pushed(0.7, {-10.0, 0.0});
-  const Solution twice = twisted_and_pushed(0.7, {20.0, 0.0});
-  const double moved = size(along_1.displacement);
-  EXPECT_NEAR(along_2.displacement[0], -along_1.displacement[1], kMotionToGap * moved);
-  EXPECT_NEAR(along_2.displacement[1], along_1.displacement[0], kMotionToGap * moved);
-  EXPECT_NEAR(against_1.displacement[0], -along_1.displacement[0], kMotionToGap * moved);
-  EXPECT_NEAR(against_1.displacement[1], -along_1.displacement[1], kMotionToGap * moved);
-  EXPECT_NEAR(against_1.twist_angle / along_1.twist_angle, 1.0, kMotionToGap);
-  EXPECT_NEAR(along_2.twist_angle / along_1.twist_angle, 1.0, kMotionToGap);
-  const double more = along_1.twist_angle / alone.twist_angle - 1.0;
-  EXPECT_GT(more, 1e-3);
-  // To the next order, F^4: F/(mu W) = 0.2, squared.
-  EXPECT_NEAR((twice.twist_angle / alone.twist_angle - 1.0) / more, 4.0, 4.0 * 0.04 * 4.0);
-  EXPECT_NEAR(size(twice.displacement) / moved, 2.0, 2.0 * 0.04 * 4.0);
-}
-
 /// A pure moment turns a body about its own axis, wherever it stands: the mesh moved by whole cells, the
 /// errors about the axis equal the errors of the centred body.
 TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
@@ -312,15 +278,6 @@ TEST(HistoryComparison, SpherePressedOnAnotherMaterialInSteps) {
   const Scene spence = on_cells(against_rigid(solver::Coupling::full), 48);
   EXPECT_NEAR(std::log(stick_ratio_error(spence, 2) / stick_ratio_error(spence, 8)) / std::log(4.0), 1.0,
               0.15);
-}
-
-/// The radius of the contact follows from its area, with Hertz's pressure or another one.
-TEST(HistoryComparison, ContactRadiusIsThatOfTheArea) {
-  for (const solver::Coupling coupling : {solver::Coupling::pressure, solver::Coupling::full}) {
-    const Solution solution = solver::solve(on_cells(against_rigid(coupling), 64));
-    const double cell = solution.grid.h1;
-    EXPECT_NEAR(solution.contact_radius, solution.contact_radius_counted, 0.3 * cell);
-  }
 }
 
 }  // namespace

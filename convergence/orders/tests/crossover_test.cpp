@@ -117,19 +117,5 @@ TEST(Crossover, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   }
 }
 
-TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
-  std::mt19937 random(5);
-  const auto width = [&](double scatter) {
-    const Crossover found =
-        find_crossover(drawn_family(fourth, scatter, 10, random), drawn_family(square, scatter, 10, random));
-    return std::log(found.high / found.low);
-  };
-  const double coarse = width(0.05);
-  EXPECT_LT(width(0.005), 0.3 * coarse);
-  // Both medians' errors, 1.25 * 0.05 / sqrt(10) each, over the difference of the exponents, 95 % of
-  // Student's.
-  EXPECT_NEAR(coarse, 2 * 2.26 * std::sqrt(2.0) * 1.25 * 0.05 / std::sqrt(10.0) / 2.0, 0.5 * coarse);
-}
-
 }  // namespace
 }  // namespace slipstick::convergence

@@ -12,7 +12,6 @@
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/solve.hpp"
 
@@ -72,20 +71,6 @@ TEST(ShiftedGrids, CancelAStaircaseOfOnePeriod) {
   EXPECT_DOUBLE_EQ(end.errors.twist, mean.error);
   ASSERT_EQ(mean.grids.size(), static_cast<std::size_t>(kShiftedGrids));
   EXPECT_GT(mean.grids[0].extent[0], mean.grids[2].extent[0]);  // the finest last
-}
-
-// Relative errors of -d, d and -d have the standard deviation sqrt(4/3) d about the mean -d/3.
-TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
-  const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
-  double d = 1e-3;
-  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
-                                            [&](const solver::Scene& at, solver::Detail detail) {
-                                              auto answer =
-                                                  Staircase{.front = 1e-4, .height = 0.0}(at, detail);
-                                              answer.record.end.loads.twist_angle = {2.0 * (1.0 + (d = -d))};
-                                              return answer;
-                                            });
-  EXPECT_NEAR(mean.uncertainty, 0.2e-3 * std::sqrt(4.0 / 3.0) / (1.0 - 1e-3 / 3.0), 1e-12);
 }
 
 // Errors add up in a history and its twists may nearly cancel: the whole scatter is uncertainty.
