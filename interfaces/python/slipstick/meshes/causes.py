@@ -19,6 +19,8 @@ _SAME_RATIO = 0.01
 #: Compliances of springs that are tried, over the compliance a/G* of the half-spaces.
 _SPRINGS = np.logspace(-2.5, 1, 8)
 
+_NORMAL, _TANGENTIAL = "layer.normal_compliance", "layer.tangential_compliance"
+
 Solve = Callable[[Mapping[str, Any]], Right]
 
 
@@ -98,8 +100,8 @@ def _missing_rows(examined: Examined, wrong: set[str]) -> Iterator[str]:
 def _other_contact(examined: Examined, wrong: set[str]) -> Iterator[str]:
     radius, load = examined.number("contact_radius"), examined.number("normal_load")
     assert radius is not None and load is not None
-    if not radius.holds and load.holds and "pressure" in wrong:
-        yield (f"another modulus or radius of the body, a soft normal penalty or a coarse mesh around the contact: its contact is "
+    if not radius.holds and load.holds:
+        yield (f"another modulus or radius of the body, or a coarse mesh around the contact: its contact is "
                f"{percent(radius.value)} too {'large' if radius.value > 0 else 'small'} under the same load")
 
 
@@ -165,33 +167,38 @@ def _other_twist(examined: Examined, request: Mapping[str, Any], wrong: set[str]
 
 
 def _springs(examined: Examined, request: Mapping[str, Any], solve: Solve, wrong: set[str]) -> Iterator[str]:
-    """Repeats the solve with springs between the bodies, of which the best compliance is taken."""
-    if request["stick_slope"] or request["normal_stiffness"] or not request["half_spaces"] or request["layer"] or not (
-            wrong & {"tractions", "pressure", "contact_radius", "stick_motion"}):
+    """Repeats the solve with springs between the bodies. Soft tangential ones turn the bodies further than the tractions do; soft normal
+    ones enlarge the contact."""
+    if request["stick_slope"] or request["normal_stiffness"] or not request["half_spaces"] or request["layer"]:
         return
-    judge, points = examined.judge, examined.patches.points
     unit = examined.right.contact_radius * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"])
-    for column, option, key in ((0, "normal stiffness", "layer.normal_compliance"), (1, "stick slope", "layer.tangential_compliance")):
-        own = examined.number("pressure" if column == 0 else "tractions")
-        assert own is not None
-        if own.holds:
-            continue
-        other = "layer.tangential_compliance" if column == 0 else "layer.normal_compliance"
 
-        def distance(compliance: float) -> float:
+    def solved(key: str) -> tuple[Array, list[Right]]:
+        answers, other = [], _TANGENTIAL if key == _NORMAL else _NORMAL
+        for compliance in _SPRINGS:
             try:
-                fields = solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}).fields(points)
+                answers.append(solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}))
             except InputError:  # the contact is larger than the grid
-                return np.inf
-            if column == 1:
-                return _distance(examined, fields)
-            return float(judge.weights @ np.abs(examined.values[:, 0] - fields[:, 0]) / (judge.weights @ judge.reference[:, 0]))
+                break
+        return unit * _SPRINGS[:len(answers)], answers
 
-        found = [distance(compliance) for compliance in _SPRINGS]
-        best = int(np.argmin(found))
-        if 0 < best or found[best] < _EXPLAINS * own.value:
-            if found[best] < _EXPLAINS * own.value or found[best] <= own.allowed:
-                yield f"the penalty is soft: a {option} of about {1 / (_SPRINGS[best] * unit):.1g} Pa/m explains the field"
+    twist, motion, radius = examined.number("twist"), examined.motion, examined.number("contact_radius")
+    assert radius is not None
+    if twist is not None and motion is not None and "twist" in wrong and examined.reported is not None:
+        further = examined.reported / motion.twist - 1
+        if further > twist.allowed:
+            compliances, answers = solved(_TANGENTIAL)
+            twists = [answer.twist / examined.right.twist - 1 for answer in answers]
+            if twists and further < max(twists):
+                slope = 1 / np.interp(further, [0, *twists], [1e-9 * unit, *compliances])
+                yield (f"the penalty lets the contact slip where it should stick: a stick slope of about {slope:.1g} Pa/m turns the "
+                       f"bodies {percent(further)} further than the tractions do")
+    if "contact_radius" in wrong and radius.value > 0:
+        compliances, answers = solved(_NORMAL)
+        radii = [answer.contact_radius / examined.right.contact_radius - 1 for answer in answers]
+        if radii and radius.value < max(radii):
+            stiffness = 1 / np.interp(radius.value, [0, *radii], [1e-9 * unit, *compliances])
+            yield f"the normal penalty is soft: a stiffness of about {stiffness:.1g} Pa/m makes the contact as large"
 
 
 def _kernels(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:

@@ -174,8 +174,9 @@ class Judge:
         scatter = np.sqrt(np.sum(weights[:, None]**2 * (u - rigid)**2) / np.sum(weights[:, None]**2 * rigid**2))
         return Motion(motion.twist, motion.displacement, float(scatter))
 
-    def slip_angle(self, kernels: Kernels, motion: Motion) -> Optional[float]:
-        """The mean angle between slip and traction, weighted with the slip, degrees. None: hardly any row slips."""
+    def slip_angle(self, kernels: Kernels, motion: Motion) -> Optional[tuple[float, float]]:
+        """The mean angle between slip and traction, weighted with the slip, degrees; and the angle, degrees, by which slip may be off
+        where displacements are as uncertain as the stick area's. None: hardly any row slips."""
         assert self.bodies is not None
         rows = ~kernels.sticks
         slip = motion.at(kernels.places[rows]) - kernels.displacement(self.bodies)[rows]
@@ -184,7 +185,8 @@ class Judge:
             return None
         own = kernels.own[rows]
         angle = np.arctan2(np.abs(slip[:, 0] * own[:, 1] - slip[:, 1] * own[:, 0]), np.sum(slip * own, axis=1))
-        return float(np.degrees(weights @ angle / weights.sum()))
+        unsure = motion.scatter * np.hypot(*motion.at(kernels.places[rows]).T) * kernels.weights[rows]
+        return float(np.degrees(weights @ angle / weights.sum())), float(np.degrees(unsure.sum() / weights.sum()))
 
     def measure(self, field: Array, kernels: Optional[Kernels]) -> dict[str, float]:
         """All numbers of a field (n, 3); those that cannot be measured are missing."""
@@ -219,5 +221,5 @@ class Judge:
             found["stick_motion"] = motion.scatter
             angle = self.slip_angle(kernels, motion)
             if angle is not None:
-                found["slip_direction"] = angle
+                found["slip_direction"], found["unsure_direction"] = angle
         return found

@@ -132,6 +132,8 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
         found["twist"] = reported / right_twist - 1
         worst["twist"] = worst["twist_of_tractions"]
     allowances = {name: _FLOORS[name] + _WHOLE_MESH * worst[name] for name in _FLOORS}
+    unsure = found.pop("unsure_direction", 0.0) * min(1.0, allowances["stick_motion"] / max(found.get("stick_motion", 0.0), 1e-300))
+    allowances["slip_direction"] += unsure
     if tolerance is not None:
         allowances = {name: np.degrees(tolerance) if name == "slip_direction" else tolerance for name in _FLOORS}
     judged = [Judged(name, value, allowances[name], worst[name]) for name, value in found.items()]
