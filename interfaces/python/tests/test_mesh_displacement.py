@@ -67,10 +67,10 @@ class Triangles(unittest.TestCase):
             first = np.c_[np.zeros(2 * n, int), 1 + ring, 1 + (ring + 1) % (2 * n)]
             quads = np.vstack([np.c_[k + ring, k + 2 * n + ring, k + 2 * n + (ring + 1) % (2 * n), k + (ring + 1) % (2 * n)]
                                for k in range(1, 2 * n * (n - 1) + 1, 2 * n)])
-            triangles, _ = displacement.triangles_of([first, quads])
+            triangles, _, shares = displacement.triangles_of([first, quads])
             pressure = np.sqrt(np.maximum(0, 1 - np.sum(vertices**2, axis=1)))
             places = np.array([[0.1, 0.05], [0.3, 0.4], [0.0, -0.8]])
-            found = integrals(places, vertices[triangles], pressure[triangles][:, :, None])[0, :, 0]
+            found = integrals(places, vertices[triangles], (pressure[triangles] * shares[:, None])[:, :, None])[0, :, 0]
             errors.append(np.abs(found / (np.pi**2 / 4 * (2 - np.sum(places**2, axis=1))) - 1).max())
         self.assertLess(errors[1], 3e-3)
         self.assertLess(errors[1], errors[0] / 2.5)

@@ -157,21 +157,23 @@ def _even(normal: Array, tangent: Array, distance: Array, position: Array, at_or
     return result * np.sign(position[1] - position[0])[:, None]
 
 
-def triangles_of(faces: list[Indices]) -> tuple[Indices, Indices]:
-    """Linear triangles (t, 3) over all faces, and the face of each: quadrilaterals as two, quadratic faces through all their nodes."""
-    parts, rows, first = [], [], 0
+def triangles_of(faces: list[Indices]) -> tuple[Indices, Indices, Array]:
+    """Linear triangles (t, 3) over all faces, the face of each, and its share. Quadrilaterals are cut along both diagonals, with half a
+    share each, so that no direction counts more; quadratic faces through all their nodes."""
+    parts, rows, shares, first = [], [], [], 0
     for array in faces:
         cut = np.array(_CUTS[array.shape[1]])
         parts.append(array[:, cut].reshape(-1, 3))
         rows.append(np.repeat(np.arange(first, first + len(array)), len(cut)))
+        shares.append(np.full(parts[-1].shape[0], 0.5 if array.shape[1] == 4 else 1.0))
         first += len(array)
-    return np.concatenate(parts), np.concatenate(rows)
+    return np.concatenate(parts), np.concatenate(rows), np.concatenate(shares)
 
 
 #: Triangles over the nodes of a face, by their number, in VTK's order: corners, then middles of edges, then the centre.
 _CUTS = {
     3: [[0, 1, 2]],
-    4: [[0, 1, 2], [0, 2, 3]],
+    4: [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]],
     6: [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
     8: [[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 6], [4, 6, 7]],
     9: [[0, 4, 8], [0, 8, 7], [4, 1, 5], [4, 5, 8], [8, 5, 2], [8, 2, 6], [7, 8, 6], [7, 6, 3]],

@@ -124,7 +124,7 @@ class Judge:
 
     def kernels(self, fields: list[Array]) -> list[Kernels]:
         """Sums the displacements under several fields (n, 3) at once."""
-        densities = np.concatenate(fields, axis=1)[self.patches.rows]
+        densities = np.concatenate(fields, axis=1)[self.patches.rows] * self.patches.shares[:, None, None]
         sums = integrals(self.patches.points[self.chosen], self.patches.corners, densities)
         return [Kernels(self.x[self.chosen], self.weights[self.chosen], self.sticks[self.chosen], sums[:, :, 3 * k:3 * k + 3],
                         values[self.chosen, 1:]) for k, values in enumerate(fields)]

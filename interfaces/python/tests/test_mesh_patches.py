@@ -1,0 +1,60 @@
+"""Triangles of meshes, and right answers put on them: facts of geometry and of least squares."""
+import unittest
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+from slipstick.meshes.field import ContactField
+from slipstick.meshes.patches import patches_of, put_on, voronoi_areas
+
+
+def square(n):
+    """Quadrilaterals of the square [-1, 1]^2, and their nodes."""
+    x = np.linspace(-1, 1, n + 1)
+    nodes = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
+    first = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    return nodes, np.column_stack([first, first + n + 1, first + n + 2, first + 1])
+
+
+def patches(kind, nodes, faces):
+    points = nodes if kind == "nodes" else nodes[faces].mean(axis=1)
+    ones = np.ones(len(points))
+    return patches_of(ContactField(kind, points, ones, np.zeros((len(points), 2)), vertices=nodes, faces=[faces]), ones)
+
+
+class Patches(unittest.TestCase):
+    def test_voronoi_areas_fill_the_hull_whatever_the_diagonals(self):
+        nodes, _ = square(8)
+        triangles = Delaunay(nodes).simplices
+        areas = np.bincount(triangles.ravel(), voronoi_areas(nodes[triangles]).ravel())
+        inside = np.abs(nodes).max(axis=1) < 1
+        np.testing.assert_allclose(areas[inside], (2 / 8)**2, rtol=1e-12)
+        self.assertAlmostEqual(areas.sum(), 4.0, 12)
+
+    def test_linear_fields_are_kept_by_every_way(self):
+        nodes, quads = square(5)
+
+        def linear(x):
+            return np.column_stack([2 + x[:, 0], x[:, 1], 1 - x[:, 0] + 3 * x[:, 1]])
+
+        for kind in ("nodes", "faces"):
+            on = patches(kind, nodes, quads)
+            self.assertAlmostEqual(on.weights.sum(), 4.0, 12)
+            inside = np.abs(on.points).max(axis=1) < 1
+            for name, values in put_on(on, linear).items():
+                np.testing.assert_allclose(values[inside], linear(on.points)[inside], atol=1e-12, err_msg=name)
+
+    def test_least_squares_keep_integrals(self):
+        nodes, quads = square(6)
+        on = patches("nodes", nodes, quads)
+
+        def bump(x):
+            return np.repeat(np.exp(-4 * np.sum(x**2, axis=1))[:, None], 3, axis=1)
+
+        found = put_on(on, bump)
+        self.assertAlmostEqual(on.weights @ found["least squares"][:, 0], on.weights @ found["means around nodes"][:, 0], 12)
+        self.assertNotAlmostEqual(on.weights @ found["values at nodes"][:, 0], on.weights @ found["least squares"][:, 0], 4)
+
+
+if __name__ == "__main__":
+    unittest.main()
