@@ -200,6 +200,18 @@ class MeshTest(ReadTest):
         self.assert_exact(field)
         self.assertAlmostEqual(field.area.sum() / ConvexHull(points).volume, 1, places=9)
         self.assertEqual(read(self.folder / "m.vtu", kind="nodes").kind, "nodes")
+        field = read(self.file("p.vtu", vtu(points, cells, self.point_data(points), {"pressure": pressure})))
+        self.assertEqual(field.kind, "nodes")  # without the shear of cells
+
+    def test_faces_of_other_surfaces_are_left_out(self):
+        points, cells = solids("hexahedron")
+        pressure, traction = solution(points[:, :2])
+        data = {"p": pressure * (points[:, 2] == 0), "q": traction * (points[:, 2] == 0)[:, None]}
+        bottom, top = (cells[0][1][:, face] for face in ([0, 3, 2, 1], [4, 5, 6, 7]))
+        field = read(self.file("m.vtu", vtu(points, [("quad", np.concatenate([bottom, top, top]))], data, {})))  # the contact twice
+        self.assert_exact(field)
+        self.assertEqual([faces.shape for faces in field.faces], [(36, 4)])
+        self.assertIn("36 faces lie on others", " ".join(field.said))
 
     def contact_of(self, points, above=False):
         """CalculiX's contact values at nodes of solids, (n, 3), of the slave: the body above or below the plane z = 0. CSHEAR

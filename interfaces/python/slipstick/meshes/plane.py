@@ -85,4 +85,5 @@ def check_flat(contact: Array, frame: Frame, source: str) -> None:
     height, size = np.ptp(contact @ frame.x3), np.ptp(frame.in_plane(contact), axis=0).max()
     if not height <= 0.1 * size:
         raise InputError(f"{source}: the contact's surface is curved: its heights along {_axis_text(frame.x3)} differ by "
-                         f"{height:.3g} over a size of {size:.3g}; allowed: at most a tenth of the size (another normal: axis)")
+                         f"{height:.3g} over a size of {size:.3g}; allowed: at most a tenth of the size, or another normal "
+                         "as --read-as axis=NX,NY,NZ")

@@ -101,13 +101,13 @@ def faces_of(cells: Blocks, points: Array, source: str) -> tuple[list[Faces], bo
 
 def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array, frame: Frame, upper: bool,
                   source: str) -> tuple[list[Faces], Optional[str]]:
-    """The faces of the contact's surface. Of solids: faces with loaded nodes; if those of both bodies are loaded, the lower
-    body's or the upper one's. Of a file's own faces: those near the contact's plane. loaded (n): nodes with a pressure. Also the
-    body whose faces they are, "lower" or "upper", if solids show it."""
+    """The faces near the contact's plane, and the body whose faces they are, "lower" or "upper", if solids show it. From solids,
+    only faces with loaded nodes are taken; if both bodies have such faces, the lower body's or the upper one's. loaded (n): nodes
+    with a pressure."""
     contact = points[loaded]
     middle, size = (contact @ frame.x3).mean(), np.ptp(frame.in_plane(contact), axis=0).max()
     towards = [face.normals(points) @ frame.x3 for face in faces]
-    near = [abs((points[face.corners()] @ frame.x3).mean(axis=1) - middle) < size for face in faces]
+    near = [abs((points[face.corners()] @ frame.x3).mean(axis=1) - middle) < 0.1 * size for face in faces]
     flat = [(abs(cosine) > 0.8) & close for cosine, close in zip(towards, near)]
     owner = None
     if outer:
@@ -118,7 +118,8 @@ def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array,
         else:
             owner = "lower" if (signs > 0).any() else "upper"
     if not any(map(np.any, flat)):
-        raise InputError(f"{source}: no face lies in the contact's plane; allowed: faces that follow it (another normal: axis)")
+        raise InputError(f"{source}: no face lies in the contact's plane; allowed: faces that follow it, or its normal as --read-as "
+                         "axis=NX,NY,NZ")
     return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner
 
 
@@ -150,3 +151,12 @@ def vertices_in_plane(chosen: list[Faces], points: Array, frame: Frame) -> tuple
     vertices = frame.in_plane(points[nodes])
     renumbered = [Faces(np.searchsorted(nodes, one.nodes)) for one in chosen]
     return vertices, [_turned(one.nodes, _areas(vertices[one.corners()]) < 0) for one in renumbered], nodes
+
+
+def without_repeated(faces: list[Faces], points: Array, frame: Frame) -> list[Faces]:
+    """The faces that do not lie exactly on another one, as a second body's or another piece's may."""
+    centres = frame.in_plane(np.concatenate([points[one.nodes].mean(axis=1) for one in faces]))
+    _, first = np.unique(np.round(centres / (1e-7 * np.ptp(centres, axis=0).max(initial=1e-300))), axis=0, return_index=True)
+    kept = np.isin(np.arange(len(centres)), first)
+    parts = np.split(kept, np.cumsum([len(one.nodes) for one in faces])[:-1])
+    return [one.chosen(part) for one, part in zip(faces, parts) if part.any()]

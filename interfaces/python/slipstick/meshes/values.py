@@ -13,7 +13,7 @@ from .names import SCALARS, VECTORS, Arrays
 from .plane import Axis, Frame
 from .units import Units
 
-HOW_TO_NAME = 'names, as "pressure=NAME,q1=NAME,q2=NAME" (' + ", ".join((*SCALARS, *VECTORS)) + ")"
+HOW_TO_NAME = "its names given, as --read-as pressure=NAME (" + ", ".join((*SCALARS, *VECTORS)) + ")"
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import contextlib
-import sys
+import io
 from pathlib import Path
 from typing import Any
 
@@ -56,16 +56,18 @@ def _loaded_file(path: Path) -> Mesh:
 
 def _by_meshio(path: Path) -> Mesh:
     import meshio  # type: ignore[import-not-found]
+    printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(sys.stderr):
+        with contextlib.redirect_stdout(printed):
             if path.suffix.lower() in (".xdmf", ".xmf") and b"Temporal" in path.read_bytes():
                 return _last_of_series(meshio, path)
             return meshes.of_meshio(meshio.read(path))
     except ModuleNotFoundError:
         raise
-    except (Exception, SystemExit) as error:  # its readers raise errors of many types, or exit
-        raise InputError(f"{path.name}: meshio {meshio.__version__} cannot read it ({type(error).__name__}: {error}); allowed: "
-                         "another file type, such as .vtu") from error
+    except (Exception, SystemExit) as error:  # its readers raise errors of many types, or print and exit
+        reason = printed.getvalue().strip() or f"{type(error).__name__}: {error}"
+        raise InputError(f"{path.name}: meshio {meshio.__version__} cannot read it: {reason}; allowed: another file type, "
+                         "such as .vtu") from error
 
 
 def _last_of_series(meshio: Any, path: Path) -> Mesh:
