@@ -98,7 +98,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
     if (ending == regular) return false;
   }
   for (const char* mesh :
-       {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med", ".msh", ".inp"}) {
+       {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med", ".msh", ".inp", ".contact"}) {
     if (ending == mesh) return true;
   }
   std::vector<std::string> names = solver::text_table_names(file);

@@ -20,6 +20,8 @@ from .errors import InputError
 from .result import Result
 
 _COLUMNS = ("x1", "x2", "pressure", "q1", "q2")
+#: Columns of fields that are on no regular grid: with the columns above, and of tables in other forms.
+_OF_POINTS, _OF_MESHES = ("area", "slip1", "slip2", "gap"), ("r", "fn", "x", "y")
 Path_ = Union[str, "os.PathLike[str]"]
 Progress = Optional[Callable[[str], object]]
 
@@ -55,21 +57,30 @@ class Study(Result):
 
 
 @contextmanager
-def _files(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike] | None = None) -> Iterator[list[str]]:
+def _files(scene: Scene, field: Any, reading: Mapping[str, Any]) -> Iterator[list[str]]:
     """The names of temporary files with the scene and the field."""
     with tempfile.TemporaryDirectory() as folder:
         text, name = text_of(scene)
         if text is not None:
             name = os.path.join(folder, "scene.toml")
             Path(name).write_text(text)
-        names = [name]
-        if field is not None and not isinstance(field, Mapping) and _hdf5.is_h5py_needed(field):
-            field = _hdf5.read(field)
-        if isinstance(field, Mapping):
-            names.append(_written(field, os.path.join(folder, "field")))
-        elif field is not None:
-            names.append(os.fspath(field))
-        yield names
+        yield [name, _file_of(field, reading, Path(folder))]
+
+
+def _file_of(field: Any, reading: Mapping[str, Any], folder: Path) -> str:
+    """The file of a field, which is written if it is an object: arrays on a grid or of a loop, or a field on a mesh."""
+    is_file = isinstance(field, (str, os.PathLike))
+    if is_file and _hdf5.is_h5py_needed(field):
+        field = _hdf5.read(field)
+    elif is_file and not reading:
+        return os.fspath(field)
+    if not reading and isinstance(field, Mapping) and ("x1" in field or not any(name in field for name in _OF_MESHES)):
+        return _written(field, os.fspath(folder / "field"))
+    from .meshes import read
+
+    file = folder / "field.contact"
+    read(field, **reading).save(file)
+    return os.fspath(file)
 
 
 def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
@@ -81,36 +92,43 @@ def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
     missing = [name for name in _COLUMNS if name not in field]
     if missing:
         raise InputError(f"the field has no {', '.join(missing)}; allowed: arrays {', '.join(_COLUMNS)}")
-    columns = [np.asarray(field[name], dtype=np.float64).ravel() for name in _COLUMNS]
+    names = [*_COLUMNS, *(name for name in _OF_POINTS if name in field)]
+    columns = [np.asarray(field[name], dtype=np.float64).ravel() for name in names]
     if len({column.size for column in columns}) > 1:
         raise InputError(f"the field's arrays have {', '.join(str(column.size) for column in columns)} values; "
                          "allowed: one a cell in each")
     cells = np.column_stack(columns)
-    cells = cells[(cells[:, 2:] != 0).any(axis=1)]
-    np.savetxt(file, cells, fmt="%.17g", delimiter=",", header=",".join(_COLUMNS), comments="")
+    cells = cells[(cells[:, 2:5] != 0).any(axis=1)]
+    np.savetxt(file, cells, fmt="%.17g", delimiter=",", header=",".join(names), comments="")
     return file
 
 
-def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: float | None = None,
-          tolerance: float | None = None, discrete: bool = False, strict: bool = False, pressure_given: bool = False,
-          **overrides: Any) -> Check:
+def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: float | None = None, discrete: bool = False,
+          strict: bool = False, pressure_given: bool = False, stick_slope: float | None = None, normal_stiffness: float | None = None,
+          held_at: float | tuple[float, float] | None = None, read_as: Mapping[str, Any] | None = None, **overrides: Any) -> Check:
     """Judges tractions from any program; docs/guides/verify-your-solver.md explains each number.
 
-    field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell, like the
-    fields of a Solution. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N), displacement (m), and
-    optionally time, normal_load. twist: the reported twist in rad (`twist_angle` of a result, not its normalised `twist`).
-    tolerance: the allowed error, instead of the tolerance of the mesh. pressure_given: the pressure is not judged. discrete:
-    good only if the field solves the discrete problem of its grid. strict: good only in the scene's own units and signs.
-    overrides: as in solve(). If the scene is not a file, write paths in it as absolute paths.
+    field: a file, or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell, like the fields of a
+    Solution. Or a field at any points or on a mesh: an object of meshio or pyvista, a DataFrame, arrays. Or a loop, as a file or as
+    arrays: moment (N m), rotation (rad), or force (N), displacement (m), and optionally time, normal_load. twist: the reported twist
+    in rad (`twist_angle` of a result, not its normalised `twist`). tolerance: the allowed error, instead of the tolerance of the
+    mesh. pressure_given: the pressure is not judged. discrete: good only if the field solves the discrete problem of its grid.
+    strict: good only in the scene's own units and signs. overrides: as in solve(). If the scene is not a file, write paths in it as
+    absolute paths.
+
+    Of a field on a mesh only: stick_slope, normal_stiffness: of its penalties, Pa/m. held_at: the radius at which its bodies are
+    held, m, and perhaps a factor of the effect. read_as: choices for its reader: kind, units, body, axis, basis, centre, names.
     """
     options: list[str] = []
-    if twist is not None:
-        options += ["--twist", repr(float(twist))]
-    if tolerance is not None:
-        options += ["--tolerance", repr(float(tolerance))]
+    for option, value in (("--twist", twist), ("--tolerance", tolerance), ("--stick-slope", stick_slope),
+                          ("--normal-stiffness", normal_stiffness)):
+        if value is not None:
+            options += [option, repr(float(value))]
+    if held_at is not None:
+        options += ["--held-at", ",".join(repr(float(part)) for part in np.atleast_1d(held_at))]
     options += ["--discrete"] * discrete + ["--strict"] * strict + ["--pressure-given"] * pressure_given
     options += _set(overrides)
-    with _files(scene, getattr(field, "fields", field)) as files:
+    with _files(scene, getattr(field, "fields", field), read_as or {}) as files:
         return Check(run("check", *files, *options))
 
 

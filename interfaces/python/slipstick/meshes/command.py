@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
@@ -32,8 +33,9 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     if undecided:
         raise InputError(f"{request['field']}: cannot be judged, though nothing is wrong that this mesh shows: {examined.advice}")
     why = _why(examined, causes, good)
+    name = examined.field.name if request["field"].endswith(".contact") else request["field"]
     choices = examined.field.said + notes
-    result = {"name": request["name"], "field": request["field"], "verdict": "good" if good else "bad", "why": why,
+    result = {"name": request["name"], "field": name, "verdict": "good" if good else "bad", "why": why,
               "causes": causes, "choices": choices, "kind": examined.field.kind, "rows": len(examined.field.points),
               "faces_across": examined.across, "right_answer": examined.right.source, **_numbers(examined),
               "judged": [{"quantity": item.quantity, "value": _finite(item.value), "allowed": item.allowed,
@@ -50,7 +52,8 @@ def _repeat(request: Mapping[str, Any], examined: Examined) -> Solve:
 
 
 def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
-    field = read(request["field"], **_reading(request["read_as"]))
+    file = Path(request["field"])
+    field = ContactField.load(file) if file.suffix == ".contact" else read(file, **_reading(request["read_as"]))
     right = _right(request, {}, None)
     field = in_units_of(field, right.contact_radius, right.normal_load)
     field, notes = _signed(field, right, any(word.startswith("body=") for word in request["read_as"]))

@@ -1,7 +1,9 @@
 """Tractions of one contact on another program's own points, with the mesh between them where it is known."""
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
@@ -45,3 +47,18 @@ class ContactField:
     def replaced(self, **changes: Any) -> ContactField:
         """A copy with other arrays."""
         return ContactField(**{**self.__dict__, **changes})
+
+    def save(self, file: Path) -> None:
+        """Writes a file for the program, which load() reads."""
+        arrays = {name: value for name, value in self.__dict__.items() if isinstance(value, np.ndarray)}
+        faces = {f"faces{k}": array for k, array in enumerate(self.faces)}
+        with file.open("wb") as stream:
+            np.savez(stream, texts=json.dumps([self.kind, self.name, self.said]), **arrays, **faces)
+
+    @classmethod
+    def load(cls, file: Path) -> ContactField:
+        with np.load(file) as data:
+            arrays = dict(data)
+        kind, name, said = json.loads(str(arrays.pop("texts")))
+        faces = [arrays.pop(key) for key in sorted(arrays) if key.startswith("faces")]
+        return cls(kind=kind, name=name, said=said, faces=faces, **arrays)
