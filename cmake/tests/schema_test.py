@@ -129,6 +129,12 @@ class Results(unittest.TestCase):
         for file, twist, code in (("contact", 2.361048651456917e-3, 0), ("cgcontact", 2.21775472e-3, 1)):
             self.run_and_check("check", SCENES / "paper.toml", FIELDS / f"{file}-64-0.9.csv", *words, twist, code=code)
 
+    def test_check_of_a_field_on_a_mesh(self):
+        rows = "0,2e9,0,0\n" + "".join(f"{0.05e-3 * k},{2e9 * (1 - (k / 10)**2)**0.5},{2e8 * (1 - (k / 10)**2)**0.5},0\n"
+                                      for k in range(1, 10))
+        table = self.file("radii.csv", "r,pressure,q_theta,q_r\n" + rows)
+        self.follows(self.run_program("check", SCENES / "paper.toml", table, code=1), "mesh")
+
     def test_check_of_a_loop(self):
         curve = self.run_program("exact", "--history", "0.8,-0.8,0.8")["curve"]
         units = self.run_program("law", SCENES / "paper.toml", "--limit-loads", 3)["units"]

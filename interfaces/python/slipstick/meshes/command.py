@@ -38,7 +38,7 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     result = {"name": request["name"], "field": name, "verdict": "good" if good else "bad", "why": why,
               "causes": causes, "choices": choices, "kind": examined.field.kind, "rows": len(examined.field.points),
               "faces_across": examined.across, "right_answer": examined.right.source, **_numbers(examined),
-              "judged": [{"quantity": item.quantity, "value": _finite(item.value), "allowed": item.allowed,
+              "judged": [{"quantity": item.quantity, **_or_reason("value", item.value, "not a number"), "allowed": item.allowed,
                           "mesh": item.right, "holds": bool(item.holds)} for item in examined.judged]}
     return {"exit_code": 0 if good else 1, "text": _text(result, examined), "result": result}
 
@@ -142,17 +142,19 @@ def _signed(field: ContactField, right: Right, given: bool) -> tuple[ContactFiel
             ["Body: the tractions are those on the upper body, since with the other sign they carry the scene's loads."])
 
 
-def _finite(value: float) -> Optional[float]:
-    return float(value) if np.isfinite(value) else None
+def _or_reason(key: str, value: Optional[float], reason: str) -> dict[str, Any]:
+    """A number of the result, or why it is missing."""
+    return {key: float(value)} if value is not None and np.isfinite(value) else {key: None, f"{key}_reason": reason}
 
 
 def _numbers(examined: Examined) -> dict[str, Any]:
     load, moment, force = examined.judge.loads(examined.values)
-    motion = examined.motion
+    twist = None if examined.motion is None else examined.motion.twist
+    missing = "too little sticks" if examined.judge.bodies else "it is known for a first loading of half-spaces only"
     return {"normal_load": load, "moment": moment, "force": force.tolist(), "contact_radius": examined.judge.radius(examined.values),
-            "stick_radius": examined.judge.stick_radius(examined.values), "twist": examined.reported,
-            "twist_of_tractions": None if motion is None else motion.twist, "right_twist": examined.right_twist,
-            "right_stick_radius": examined.judge.stick_radius(examined.judge.reference)}
+            "stick_radius": examined.judge.stick_radius(examined.values),
+            "right_stick_radius": examined.judge.stick_radius(examined.judge.reference), "right_twist": examined.right_twist,
+            **_or_reason("twist", examined.reported, "not given"), **_or_reason("twist_of_tractions", twist, missing)}
 
 
 def _why(examined: Examined, causes: list[str], good: bool) -> str:
