@@ -119,6 +119,8 @@ class TableTest(ReadTest):
         self.assert_exact(read(self.folder / "arrays.npz"))
         self.assert_exact(read(np.rec.fromarrays(list(columns.values()), names=list(columns))))
         self.assert_exact(read({name.replace("p", "lam"): column for name, column in columns.items()}, names="pressure=lam"))
+        vectors = np.column_stack([columns["qx"], columns["qy"]])
+        self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names={"shear": "mine"}))
 
     def test_planes_of_points_in_space(self):
         points, _ = MESHES["polar"]
@@ -208,7 +210,8 @@ class MeshTest(ReadTest):
         pressure, traction = solution(points[:, :2])
         data = {"p": pressure * (points[:, 2] == 0), "q": traction * (points[:, 2] == 0)[:, None]}
         bottom, top = (cells[0][1][:, face] for face in ([0, 3, 2, 1], [4, 5, 6, 7]))
-        field = read(self.file("m.vtu", vtu(points, [("quad", np.concatenate([bottom, top, top]))], data, {})))  # the contact twice
+        both_and_repeated = [("quad", np.concatenate([bottom, top, top]))]
+        field = read(self.file("m.vtu", vtu(points, both_and_repeated, data, {})))
         self.assert_exact(field)
         self.assertEqual([faces.shape for faces in field.faces], [(36, 4)])
         self.assertIn("36 faces lie on others", " ".join(field.said))

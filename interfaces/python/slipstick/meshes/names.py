@@ -38,6 +38,9 @@ SCALARS: dict[str, tuple[str, ...]] = {
     "area": ("area", "weight", "nodal area", "cnarea", "cell area"),
 }
 VECTORS = {"shear": _SHEAR, "traction": _FULL, "force": _FORCE, "slip": _SLIP}
+QUANTITIES = {"length": ("x1", "x2", "x3", "r", "slip1", "slip2", "slip", "gap"),
+              "stress": ("pressure", "q1", "q2", "q_theta", "q_r", "shear", "traction"),
+              "force": ("f1", "f2", "fn", "force"), "area": ("area",)}
 _SURFACE_TANGENTS = ("cshear", "cslip")
 
 
@@ -77,17 +80,20 @@ class Arrays:
         """The name of the array of numbers that has this meaning; None: the file has none."""
         if role in self._names:
             return self._names[role]
-        name = next((self._plain[_plain(name)] for name in SCALARS[role] if _plain(name) in self._plain), None)
-        return name if name is not None and self._width(name) == 1 else None
+        present = (self._plain[_plain(name)] for name in SCALARS[role] if _plain(name) in self._plain)
+        return next((name for name in present if self._width(name) == 1), None)
+
+    def is_given(self, role: str) -> bool:
+        """Whether the user named the array of this meaning."""
+        return role in self._names
 
     def _width(self, name: str) -> int:
         array = self._arrays[name]
         return 1 if array.ndim == 1 else array.shape[1]
 
-    def scalar(self, role: str) -> Optional[Array]:
-        """The numbers (n) that have this meaning."""
-        name = self.name_of(role)
-        return None if name is None else self._numbers(name).reshape(-1)
+    def arrays_of(self, role: str) -> list[str]:
+        """The arrays of a number or a vector of this meaning."""
+        return self.components_of(role) if role in VECTORS else [name for name in [self.name_of(role)] if name]
 
     def components_of(self, role: str) -> list[str]:
         """The arrays of a vector along the file's x, y and z: one with 2 or 3 columns, or 2 or 3 with names like tx, ty, tz."""
@@ -103,11 +109,14 @@ class Arrays:
                     return found
         return []
 
-    def vector(self, role: str) -> Optional[Array]:
-        """The vectors (n, 3) along the file's axes; components that the file leaves out are zero."""
-        found = [self._numbers(name) for name in self.components_of(role)]
+    def values(self, role: str) -> Optional[Array]:
+        """The numbers (n), or the vectors (n, 3) along the file's axes, that have this meaning; components that the file leaves
+        out are zero. None: the file has none."""
+        found = [self._numbers(name) for name in self.arrays_of(role)]
         if not found:
             return None
+        if role in SCALARS:
+            return found[0].reshape(-1)
         array = found[0] if found[0].ndim == 2 else np.stack(found, axis=1)
         return np.pad(array, ((0, 0), (0, 3 - array.shape[1])))
 
@@ -116,11 +125,10 @@ class Arrays:
         return _plain(self.name_of(role) or "").startswith(_SURFACE_TANGENTS)
 
     def has_pressure(self) -> bool:
-        return any(self.name_of(role) for role in ("pressure", "fn")) or any(self.components_of(r) for r in ("traction", "force"))
+        return any(map(self.arrays_of, ("pressure", "fn", "traction", "force")))
 
     def has_shear(self) -> bool:
-        vectors = ("shear", "traction", "force")
-        return any(self.name_of(role) for role in ("q1", "f1")) or any(self.components_of(role) for role in vectors)
+        return any(map(self.arrays_of, ("q1", "f1", "shear", "traction", "force")))
 
     def _numbers(self, name: str) -> Array:
         array = self._arrays[name]

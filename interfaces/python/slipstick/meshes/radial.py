@@ -10,19 +10,28 @@ from .names import Arrays
 from .units import Units
 from .values import HOW_TO_NAME, Options
 
+_LEAST_ANGLES, _MOST_NODES = 36, 20000
+_MOST_RADII = _MOST_NODES // _LEAST_ANGLES
+
 
 def of_radial_table(arrays: Arrays, options: Options, units: Units, name: str) -> ContactField:
     """Values on a radius, put on circles of nodes. q_theta: around the axis; q_r: away from it."""
     if not arrays.name_of("pressure"):
         raise InputError(f"{name}: it has the columns {arrays.listed()} and no pressure; allowed: {FORMS}; or {HOW_TO_NAME}")
-    columns = [units.scaled(arrays, role, "length" if role == "r" else "stress") for role in ("r", "pressure", "q_theta", "q_r")]
+    units.learn(arrays)
+    columns = [units.scaled(arrays, role) for role in ("r", "pressure", "q_theta", "q_r")]
     order = np.argsort(np.asarray(columns[0]))
     radii, pressure, around, outward = (np.zeros(len(order)) if column is None else np.nan_to_num(column[order])
                                         for column in columns)
     if not (radii[0] >= 0 and np.all(np.diff(radii) > 0) and pressure.max() > 0):
         raise InputError(f"{name}: allowed: radii that differ, from 0, and a positive pressure at one or more of them")
+    said = []
+    if len(radii) > _MOST_RADII:
+        every = -(-len(radii) // _MOST_RADII)
+        radii, pressure, around, outward = (column[::every] for column in (radii, pressure, around, outward))
+        said.append(f"Rows: one radius of {every} is taken.")
     vertices, faces, on_nodes, traction = _swept(radii, pressure, around, outward)
-    said = [f"Kind: {len(radii)} radii are turned about the axis, to {len(vertices)} nodes with {len(faces[0])} angles."]
+    said.append(f"Kind: {len(radii)} radii are turned about the axis, to {len(vertices)} nodes with {len(faces[0])} angles.")
     if options.body == "upper":
         traction = -traction
         said.append("Body: the shear acts on the upper body, and is turned.")
@@ -37,7 +46,7 @@ def _swept(radii: Array, pressure: Array, around: Array, outward: Array) -> tupl
     contact = radii[pressure > 0]
     inner = radii[radii <= contact.max()]
     wanted = 2 * np.pi * contact.max() / np.median(np.diff(inner)) if len(inner) > 1 else 0
-    angles = int(max(36, min(wanted, 20000 / len(radii))))
+    angles = int(max(_LEAST_ANGLES, min(wanted, _MOST_NODES / len(radii))))
     angle = 2 * np.pi * np.arange(angles) / angles
     axis, rings = radii[0] == 0, radii[radii > 0]
     first = int(axis)

@@ -60,11 +60,12 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
         return of_radial_table(arrays, options, units, name)
     if not (arrays.name_of("x1") and arrays.name_of("x2") and arrays.has_pressure()):
         raise InputError(f"{name}: it has the columns {arrays.listed()}; allowed: {FORMS}; or {HOW_TO_NAME}")
+    units.learn(arrays)
     points, frame = _points_of(arrays, options, units, name)
     values = values_of(arrays, frame, options, units, name)
     if arrays.name_of("x3"):
         values.said.append(frame.said())
-    area = units.scaled(arrays, "area", "area")
+    area = units.scaled(arrays, "area")
     kind = "forces" if values.are_forces else options.kind or ("nodes" if area is None else "points")
     if options.kind is None:
         values.said.append({"forces": "Kind: rows are nodal forces.",
@@ -80,7 +81,7 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
 
 def _points_of(arrays: Arrays, options: Options, units: Units, name: str) -> tuple[Array, Frame]:
     """Points (n, 2) in m and the frame of a table; with a third coordinate the contact's plane is found."""
-    columns = [column for column in (units.scaled(arrays, role, "length") for role in ("x1", "x2", "x3")) if column is not None]
+    columns = [column for column in (units.scaled(arrays, role) for role in ("x1", "x2", "x3")) if column is not None]
     points = in_space(np.stack(columns, axis=1))
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):

@@ -118,8 +118,8 @@ def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array,
         else:
             owner = "lower" if (signs > 0).any() else "upper"
     if not any(map(np.any, flat)):
-        raise InputError(f"{source}: no face lies in the contact's plane; allowed: faces that follow it, or its normal as --read-as "
-                         "axis=NX,NY,NZ")
+        raise InputError(f"{source}: no face lies in the contact's plane; allowed: faces that follow it, or its normal as "
+                         "--read-as axis=NX,NY,NZ")
     return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner
 
 

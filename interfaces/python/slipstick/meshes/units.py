@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from .field import Array, ContactField
-from .names import Arrays
+from .names import QUANTITIES, Arrays
 
 _SI = {
     "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254},
@@ -49,11 +49,11 @@ class Units:
                              f'{", ".join(_SI[quantity])}')
         return unit
 
-    def note(self, quantity: str, columns: list[str]) -> None:
-        """Takes the unit of a quantity from the headers of its columns, for columns without one too."""
-        for column in columns:
-            self._found.setdefault(quantity, self._own(quantity, column) or "")
-            self._found[quantity] = self._found[quantity] or self._own(quantity, column) or ""
+    def learn(self, arrays: Arrays) -> None:
+        """Takes units from headers; one column's unit holds for the columns without one of the same quantity too."""
+        for quantity in ("length", "stress", "force"):
+            units = [self._own(quantity, column) for role in QUANTITIES[quantity] for column in arrays.arrays_of(role)]
+            self._found[quantity] = next(filter(None, units), "")
 
     def _general(self, quantity: str) -> Optional[float]:
         """The size of a quantity's unit, given, found in a header or made of the others; None: unknown."""
@@ -74,14 +74,11 @@ class Units:
             return (stress or 1.0) * (length or 1.0)**2
         return self._general(quantity) or 1.0
 
-    def scaled(self, arrays: Arrays, role: str, quantity: str) -> Optional[Array]:
-        """The array of numbers (n) with this meaning in SI units; None: the source has none."""
-        column = arrays.name_of(role)
-        if column is None:
-            return None
-        if quantity != "area":
-            self.note(quantity, [column])
-        return np.asarray(arrays.scalar(role)) * self.size(quantity, column)
+    def scaled(self, arrays: Arrays, role: str) -> Optional[Array]:
+        """The numbers (n) or vectors (n, 3) with this meaning in SI units; None: the source has none."""
+        values = arrays.values(role)
+        quantity = next(quantity for quantity, roles in QUANTITIES.items() if role in roles)
+        return None if values is None else values * self.size(quantity, arrays.arrays_of(role)[0])
 
     def said(self) -> list[str]:
         """The units that are taken, and the ones that are not known."""
@@ -117,6 +114,6 @@ def in_units_of(field: ContactField, contact_radius: float, load: float) -> Cont
                     f"{measured[quantity] * size[quantity]:.3g} and {expected[quantity]:.3g} is expected (SI).")
     length, stress = size["length"], size["stress"]
     scaled = {"area": length**2, "vertices": length, "slip": length, "gap": length}
+    others = {name: getattr(field, name) * factor for name, factor in scaled.items() if getattr(field, name) is not None}
     return field.replaced(points=field.points * length, pressure=field.pressure * stress, traction=field.traction * stress,
-                          said=said, **{name: getattr(field, name) * factor for name, factor in scaled.items()
-                             if getattr(field, name) is not None})
+                          said=said, **others)

@@ -47,10 +47,9 @@ class Values:
 
 def loaded(arrays: Arrays) -> npt.NDArray[np.bool_]:
     """(n): rows with a pressure, a normal force or, if the source has vectors only, a vector that is more than rounding."""
-    load = next((arrays.scalar(role) for role in ("pressure", "fn") if arrays.name_of(role)), None)
-    if load is None:
-        vectors = arrays.vector("traction")
-        load = np.linalg.norm(arrays.vector("force") if vectors is None else vectors, axis=1)
+    role = next(role for role in ("pressure", "fn", "traction", "force") if arrays.arrays_of(role))
+    load = np.asarray(arrays.values(role))
+    load = load if load.ndim == 1 else np.linalg.norm(load, axis=1)
     size = np.nan_to_num(abs(load))
     return np.asarray(size > 1e-6 * size.max(initial=0))
 
@@ -65,28 +64,20 @@ class _Extraction:
     tangents: Array  # (2, 2): components along x1 and x2 of the directions of q1 and q2
     said: list[str] = field(default_factory=list)
 
-    def vectors(self, role: str, quantity: str) -> Optional[Array]:
-        """Vectors (n, 3) along the file's axes in SI units; None: the file has none."""
-        columns = self.arrays.components_of(role)
-        if not columns:
-            return None
-        self.units.note(quantity, columns)
-        return np.asarray(self.arrays.vector(role)) * self.units.size(quantity, columns[0])
-
-    def in_plane(self, roles: tuple[str, str], vector_roles: tuple[str, ...], quantity: str) -> Optional[Array]:
-        """(n, 2) along x1 and x2: two arrays, or the first vector that the file has."""
-        parts = [self.units.scaled(self.arrays, role, quantity) for role in roles]
-        if parts[0] is not None and parts[1] is not None:
+    def in_plane(self, roles: tuple[str, str], vector_roles: tuple[str, ...]) -> Optional[Array]:
+        """(n, 2) along x1 and x2: two arrays, or the first vector that the file has; a vector that the user named comes first."""
+        parts = [self.units.scaled(self.arrays, role) for role in roles]
+        if parts[0] is not None and parts[1] is not None and not any(map(self.arrays.is_given, vector_roles)):
             return np.stack([parts[0], parts[1]], axis=1) @ self.tangents
-        vectors = [self.vectors(role, quantity) for role in vector_roles]
+        order = sorted(vector_roles, key=lambda role: not self.arrays.is_given(role))
+        vectors = [self.units.scaled(self.arrays, role) for role in order]
         return next((self.frame.in_plane(found) for found in vectors if found is not None), None)
 
     def pressure(self, are_forces: bool, given: Optional[str], usual: str) -> tuple[Array, str]:
         """Pressure or normal force (n), positive in compression, and the body on which the shear acts: the given one, the one
         that vectors with a normal component press on, or the usual one."""
-        quantity, name = ("force", "force") if are_forces else ("stress", "traction")
-        pressure = self.units.scaled(self.arrays, "fn" if are_forces else "pressure", quantity)
-        vectors = self.vectors(name, quantity)
+        pressure = self.units.scaled(self.arrays, "fn" if are_forces else "pressure")
+        vectors = self.units.scaled(self.arrays, "force" if are_forces else "traction")
         upwards = np.zeros(0) if vectors is None else vectors @ self.frame.x3  # a traction on the upper body
         if pressure is None:
             pressure = upwards if np.nansum(upwards) > 0 else -upwards
@@ -106,27 +97,23 @@ def values_of(arrays: Arrays, frame: Frame, options: Options, units: Units, sour
     CSHEAR1 and CSHEAR2 act on the master, along tangents made with the master's normal."""
     of_program = arrays.on_surface_tangents("q1")
     master = "upper" if owner == "lower" and of_program else "lower"
-    basis = options.basis or (master if of_program else "axes")
+    basis = options.basis or ((options.body or master) if of_program else "axes")
     found = _Extraction(arrays, frame, units, np.eye(2) if basis == "axes" else frame.tangents(of_upper=basis == "upper"))
     if of_program and options.basis is None:
         found.said.append("Basis: the shear's components lie along t1, the x axis projected on the surface, and t2 = n x t1, n "
                           f"the {basis} body's outward normal (CalculiX: the master's, Abaqus: the slave's).")
-    has_forces = bool(arrays.name_of("fn") or arrays.components_of("force"))
-    has_stresses = bool(arrays.name_of("pressure") or arrays.components_of("traction"))
+    has_forces, has_stresses = (any(map(arrays.arrays_of, roles)) for roles in (("fn", "force"), ("pressure", "traction")))
     are_forces = has_forces and (options.kind == "forces" or not has_stresses)
     pressure, body = found.pressure(are_forces, options.body, master)
-    if are_forces:
-        traction = found.in_plane(("f1", "f2"), ("force",), "force")
-    else:
-        traction = found.in_plane(("q1", "q2"), ("shear", "traction"), "stress")
+    traction = found.in_plane(("f1", "f2"), ("force",)) if are_forces else found.in_plane(("q1", "q2"), ("shear", "traction"))
     if traction is None:
         raise InputError(f"{source}: it has no shear; it has {arrays.listed()}; allowed: q1 and q2, CSHEAR1 and CSHEAR2, a "
                          f"vector like tangent_traction, or {HOW_TO_NAME}")
-    slip = found.in_plane(("slip1", "slip2"), ("slip",), "length")
+    slip = found.in_plane(("slip1", "slip2"), ("slip",))
     if body == "upper":
         traction = -traction
         slip = -slip if slip is not None and arrays.on_surface_tangents("slip1") else slip
-    values = Values(pressure, traction, are_forces, slip, units.scaled(arrays, "gap", "length"), found.said)
+    values = Values(pressure, traction, are_forces, slip, units.scaled(arrays, "gap"), found.said)
     _clean(values, source)
     return values
 
