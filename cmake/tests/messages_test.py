@@ -51,7 +51,8 @@ def fragment(literal):
 
 def messages(root):
     """(place, fragment) of each message in the sources."""
-    tops = ("analytic", "bench", "convergence", "interfaces/python/slipstick/speed", "reports", "solver")
+    package = "interfaces/python/slipstick"
+    tops = ("analytic", "bench", "convergence", f"{package}/meshes", f"{package}/speed", "reports", "solver")
     files = [file for top in tops for ending in ("cpp", "hpp", "py") for file in (root / top).rglob("*." + ending)]
     for file in sorted(files) + [root / "main.cpp"]:
         path = file.relative_to(root)

@@ -68,7 +68,8 @@ class TableTest(ReadTest):
 
     def test_units(self):
         self.assert_exact(read(self.table(header="x1 [mm],x2 [mm],pressure [MPa],q1 [MPa],q2 [MPa]", length=1e-3, stress=1e6)))
-        self.assert_exact(read(self.table(header="x1 [mm] x2 pressure (N/mm^2) q1 q2", separator=" ", length=1e-3, stress=1e6)))
+        for header in ("x1 [mm] x2 pressure (N/mm^2) q1 q2", "x1 x2 [mm] pressure q1 q2 [MPa]"):  # one unit for a quantity
+            self.assert_exact(read(self.table(header=header, separator=" ", length=1e-3, stress=1e6)))
         bare = self.table(length=1e-3, stress=1e6)
         self.assert_exact(read(bare, units="mm,MPa"))
         fitted = in_units_of(read(bare), RADIUS, LOAD)
