@@ -299,6 +299,9 @@ class MeshTest(ReadTest):
                 self.assertEqual(field.kind, kind)
                 self.assert_exact(field)
 
+        grid.points = grid.points[:50]
+        self.assert_refused("do not belong together", grid)
+
     def test_vtk_collections(self):
         points, cells = MESHES["polar"]
         self.file("late.vtu", vtu(points, cells, self.point_data(points), {}))
@@ -345,6 +348,9 @@ class MeshTest(ReadTest):
         self.assert_refused('axis = "w"; allowed: x, y, z', written(**data), axis="w")
         bowl = np.column_stack([points, 0.5 * (points**2).sum(axis=1) / RADIUS])
         self.assert_refused("the contact's surface is curved", written(bowl, **data))
+        raw = vtu(points, cells, data, {}, "raw", "vtkZLibDataCompressor")
+        start = raw.index(b'raw">_')
+        self.assert_refused("it is damaged", self.file("d.vtu", raw[:start + 50] + raw[start + 90:]))
         self.assert_refused("it is no whole XML file", self.file("cut.vtu", written(**data).read_bytes()[:-50]))
 
 

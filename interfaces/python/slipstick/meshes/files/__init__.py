@@ -16,16 +16,15 @@ from .mesh import Mesh
 from .tables import read_table
 from .vtu import read_vtu
 
-_TABLES = (".csv", ".txt", ".tsv", ".dat", ".tab", ".asc")
-_XML = (".vtu", ".vtp", ".pvtu", ".pvtp", ".pvd")
-_EXODUS = (".e", ".exo", ".ex2")
-_MESHIO = (".vtk", ".xdmf", ".xmf", ".med", ".msh", ".inp")
-
 
 def load(source: Any, name: str) -> Mesh:
     """The arrays of a source, as they are."""
-    if isinstance(source, (str, Path)):
-        return _loaded_file(Path(source))
+    mesh = _loaded_file(Path(source)) if isinstance(source, (str, Path)) else _of_object(source, name)
+    _check(mesh, name)
+    return mesh
+
+
+def _of_object(source: Any, name: str) -> Mesh:
     if hasattr(source, "point_data") and hasattr(source, "points"):
         return meshes.of_pyvista(source) if hasattr(source, "celltypes") or hasattr(source, "faces") else meshes.of_meshio(source)
     if hasattr(source, "keys") or getattr(getattr(source, "dtype", None), "names", None):
@@ -34,24 +33,38 @@ def load(source: Any, name: str) -> Mesh:
 
 
 def _loaded_file(path: Path) -> Mesh:
-    ending = path.suffix.lower()
+    """The arrays of a file, by the reader of its extension."""
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
-    if ending in (*_TABLES, ""):
-        return read_table(path)
-    if ending in _XML:
-        return read_vtu(path)
-    if ending == ".frd":
-        return read_frd(path)
-    if ending in _EXODUS:
-        return read_exodus(path)
-    if ending == ".npz":
-        with np.load(path) as arrays:
-            return meshes.of_columns(dict(arrays), path.name)
-    if ending in _MESHIO:
-        return _by_meshio(path)
-    allowed = ", ".join((*_TABLES, ".npz", ".frd", *_XML, *_EXODUS, *_MESHIO))
-    raise InputError(f"{path.name}: unknown extension; allowed: {allowed}; many programs can write .vtu files or tables")
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path.name}: unknown extension; allowed: {', '.join(filter(None, _READERS))}; many programs can write "
+                         ".vtu files or tables")
+    try:
+        return reader(path)
+    except (InputError, ModuleNotFoundError):
+        raise
+    except Exception as error:  # a damaged file lets a reader fail in any way
+        reason = str(error) or type(error).__name__
+        raise InputError(f"{path.name}: it is damaged, or not of the type {path.suffix}: {reason}") from error
+
+
+def _check(mesh: Mesh, name: str) -> None:
+    """Refuses a mesh whose arrays do not belong together."""
+    rows = len(mesh.points)
+    nodes = [block for _, block in mesh.cells if block.size]
+    whole = all(block.min() >= 0 and block.max() < rows for block in nodes) and np.isfinite(mesh.points).all()
+    at_points = not rows or all(len(array) == rows for array in mesh.point_data.values())
+    sizes = [len(block) for _, block in mesh.cells]
+    at_cells = all([len(array) for array in arrays] == sizes for arrays in mesh.cell_data.values())
+    if not (whole and at_points and at_cells):
+        raise InputError(f"{name}: its points, cells and arrays do not belong together; allowed: finite points, cells of these "
+                         "points, and one row for each of them in each array")
+
+
+def _read_npz(path: Path) -> Mesh:
+    with np.load(path) as arrays:
+        return meshes.of_columns(dict(arrays), path.name)
 
 
 def _by_meshio(path: Path) -> Mesh:
@@ -78,3 +91,9 @@ def _last_of_series(meshio: Any, path: Path) -> Mesh:
     mesh = meshes.of_meshio(meshio.Mesh(points, cells, point_data, cell_data))
     mesh.said.append(f"Step: the last one of {series.num_steps}, at time {time:g}.")
     return mesh
+
+
+_READERS = {**dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".tab", ".asc", ""), read_table), ".npz": _read_npz,
+            **dict.fromkeys((".vtu", ".vtp", ".pvtu", ".pvtp", ".pvd"), read_vtu), ".frd": read_frd,
+            **dict.fromkeys((".e", ".exo", ".ex2"), read_exodus),
+            **dict.fromkeys((".vtk", ".xdmf", ".xmf", ".med", ".msh", ".inp"), _by_meshio)}

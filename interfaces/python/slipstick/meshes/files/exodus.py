@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
 from .mesh import Blocks, Mesh, in_space
 
 _TYPES = {("TRI", 3): "triangle", ("TRI", 6): "triangle6", ("QUA", 4): "quad", ("QUA", 8): "quad8", ("QUA", 9): "quad9",
@@ -23,11 +22,7 @@ def _names(variable: Any) -> list[tuple[int, str]]:
 def read_exodus(path: Path) -> Mesh:
     """The mesh and its variables of the last time; elements of other types than _TYPES are left out."""
     import netCDF4  # type: ignore[import-not-found]
-    try:
-        file = netCDF4.Dataset(path)
-    except OSError as error:
-        raise InputError(f"{path.name}: it is no Exodus file: {error}") from None
-    with file:
+    with netCDF4.Dataset(path) as file:
         has = file.variables
         if "coord" in has:
             points = np.asarray(has["coord"][:]).T

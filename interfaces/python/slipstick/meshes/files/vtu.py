@@ -105,6 +105,8 @@ class _File:
             each = [np.diff(section.get("offsets", none), prepend=0) for _, section in sections]
             types = np.concatenate([np.full(len(sizes), number) for (number, _), sizes in zip(sections, each)])
             nodes, sizes = np.concatenate([section.get("connectivity", none) for _, section in sections]), np.concatenate(each)
+        if len(types) != len(sizes) or sizes.min(initial=0) < 0 or sizes.sum() != len(nodes):
+            raise ValueError("its cells' types, offsets and connectivity do not belong together")
         at_cells = self.arrays(piece.find("CellData"))
         own = at_cells.pop("vtkGhostType", np.zeros(len(types))) == 0  # the rest repeats cells of other pieces
         return of_vtk(next(iter(points.values()), np.empty((0, 3))), types[own], sizes[own], nodes[np.repeat(own, sizes)],
