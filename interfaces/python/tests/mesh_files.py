@@ -182,3 +182,35 @@ def write_exodus(path, form, points, cells, names, values):
             for (role, suffix, dimension), array in zip(at, values):
                 variable = file.createVariable(f"vals_{role}{i + 1}{suffix}", "f8", ("time_step", dimension))
                 variable[:] = [0 * array[:, i], array[:, i]]
+
+
+def calculix_blocks(axes, slave, number=4):
+    """The input of CalculiX for a block pressed on a larger one, and then twisted by a positive moment. axes: the file's axes of
+    x1, x2 and x3; slave: the body, "lower" or "upper"."""
+    lines = ["*MATERIAL, NAME=STEEL", "*ELASTIC", "210000, 0.3"]
+    held = {}
+    for body, size, heights, first in (("lower", 1.5, (-1, 0), 1), ("upper", 1.0, (0, 1), 1001)):
+        line = np.linspace(-size, size, number + 1)
+        place = first + np.arange(2 * (number + 1)**2).reshape(2, number + 1, number + 1)
+        lines.append("*NODE, NSET=ALL")
+        for (k, j, i), node in np.ndenumerate(place):
+            at = np.empty(3)
+            at[list(axes)] = line[i], line[j], heights[k]
+            lines.append(f"{node}, {at[0]:.9g}, {at[1]:.9g}, {at[2]:.9g}")
+        held[body] = [(place[k, j, i], line[i], line[j]) for (k, j, i), _ in np.ndenumerate(place) if k == (body == "upper")]
+        lines.append(f"*ELEMENT, TYPE=C3D8, ELSET={body}")
+        for j, i in np.ndindex(number, number):
+            corners = [place[k, j + b, i + a] for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            lines.append(", ".join(map(str, [first + i + number * j, *corners])))
+        lines += [f"*SURFACE, NAME=S{body}", f"{body}, {'S2' if body == 'lower' else 'S1'}",
+                  f"*SOLID SECTION, ELSET={body}, MATERIAL=STEEL"]
+    lines += ["*SURFACE INTERACTION, NAME=I", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", "1e7", "*FRICTION", "0.5, 1e7",
+              "*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", f"S{slave}, S{'upper' if slave == 'lower' else 'lower'}",
+              "*BOUNDARY", *(f"{node}, 1, 3" for node, _, _ in held["lower"])]
+    for twist in (0, 2e-4):
+        lines += ["*STEP", "*STATIC", "1, 1", "*BOUNDARY"]
+        for node, x1, x2 in held["upper"]:
+            for axis, motion in zip(axes, (-twist * x2, twist * x1, -1e-3)):
+                lines.append(f"{node}, {axis + 1}, {axis + 1}, {motion:.6g}")
+        lines += ["*CONTACT FILE", "CDIS, CSTR", "*END STEP"]
+    return "\n".join([*lines, ""])

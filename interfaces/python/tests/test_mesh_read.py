@@ -1,12 +1,15 @@
 """slipstick.meshes.read: the exact solution, written in every kind of file, is read back."""
 import importlib.util
+import shutil
+import subprocess
 import tempfile
 import types
 import unittest
 from pathlib import Path
 
 import numpy as np
-from mesh_files import COMPRESSORS, FRICTION, LOAD, MESHES, PEAK, RADIUS, VTK_TYPES, frd, solids, solution, vtu, write_exodus
+from mesh_files import (COMPRESSORS, FRICTION, LOAD, MESHES, PEAK, RADIUS, VTK_TYPES, calculix_blocks, frd, solids, solution, vtu,
+                        write_exodus)
 from scipy.spatial import ConvexHull
 from slipstick import InputError
 from slipstick.meshes.read import read
@@ -122,6 +125,8 @@ class TableTest(ReadTest):
         self.assert_exact(read({name.replace("p", "lam"): column for name, column in columns.items()}, names="pressure=lam"))
         vectors = np.column_stack([columns["qx"], columns["qy"]])
         self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names={"shear": "mine"}))
+        self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names="q1=mine:0,q2=mine:1"))
+        self.assert_refused('it has no column "mine:2"', {**columns, "mine": vectors}, names="q1=mine:2")
 
     def test_planes_of_points_in_space(self):
         points, _ = MESHES["polar"]
@@ -206,6 +211,20 @@ class MeshTest(ReadTest):
         field = read(self.file("p.vtu", vtu(points, cells, self.point_data(points), {"pressure": pressure})))
         self.assertEqual(field.kind, "nodes")  # without the shear of cells
 
+    @unittest.skipUnless(shutil.which("ccx"), "CalculiX is not installed")
+    def test_tangents_and_master_of_calculix(self):
+        for slave in ("lower", "upper"):
+            moments = []
+            for axes in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # the same blocks with other axes
+                self.file("blocks.inp", calculix_blocks(axes, slave))
+                subprocess.run(["ccx", "blocks"], cwd=self.folder, check=True, capture_output=True)
+                field = read(self.folder / "blocks.frd")
+                forces = nodal_areas(field.faces, field.vertices)[:, None] * field.traction
+                moments.append(float(np.sum(field.points[:, 0] * forces[:, 1] - field.points[:, 1] * forces[:, 0])))
+                self.assertLess(np.abs(forces.sum(axis=0)).max(), 0.02 * moments[0])  # a twist about the axis moves no force
+                np.testing.assert_allclose(moments, moments[0], rtol=1e-6)
+            self.assertGreater(moments[0], 0)
+
     def test_faces_of_other_surfaces_are_left_out(self):
         points, cells = solids("hexahedron")
         pressure, traction = solution(points[:, :2])
@@ -251,7 +270,7 @@ class MeshTest(ReadTest):
             mesh = meshio.Mesh(np.pad(points, ((0, 0), (0, 1))), cells, point_data=data)
             self.assert_exact(read(mesh))
             written = {"vtk": "vtk", "vtu": "vtu"}
-            if len(cells) == 1:  # for other meshes meshio's writer wants more data
+            if len(cells) == 1:  # meshio's writer needs more data for other meshes
                 written["msh"] = "gmsh"
             if importlib.util.find_spec("h5py"):
                 written["xdmf"] = "xdmf"

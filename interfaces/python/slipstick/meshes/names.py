@@ -63,11 +63,14 @@ class Arrays:
     """The arrays of n rows of one file. where: "column", "point array" or "cell array", for messages."""
 
     def __init__(self, arrays: Mapping[str, Array], names: dict[str, str], source: str, where: str):
-        self._arrays, self._names, self._source, self._where = arrays, names, source, where
+        self._arrays, self._names, self._source, self._where = dict(arrays), names, source, where
         self._plain = {_plain(name): name for name in reversed(list(arrays))}
         for name in names.values():
-            if name not in arrays:
-                raise InputError(f'{source}: it has no {where} "{name}"; it has {self.listed()}')
+            whole, _, column = name.rpartition(":")
+            if name not in arrays and whole in arrays and column.isdigit() and int(column) < self._width(whole) > 1:
+                self._arrays[name] = arrays[whole][:, int(column)]
+            elif name not in arrays:
+                raise InputError(f'{source}: it has no {where} "{name}"; it has {self.listed()} (NAME:0 is a first column)')
 
     def rows(self, which: Indices) -> Arrays:
         """The same arrays, of some rows only."""

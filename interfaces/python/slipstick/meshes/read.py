@@ -4,8 +4,9 @@ The reader takes the likely choice where the source leaves one open, and says so
 
 kind    key of field.KINDS. Meshes: cell data with pressure and shear are "faces", else point data are "nodes". Tables: rows with
         an area are "points", others "nodes".
-names   the arrays' names, as {"pressure": NAME, ...} or "pressure=NAME,q1=NAME"; keys: names.SCALARS and names.VECTORS.
-units   "mm,MPa" or the like. Without it: the header's units, else m and Pa (see units.in_units_of).
+names   the arrays' names, as {"pressure": NAME, ...} or "pressure=NAME,q1=NAME"; keys: names.SCALARS and names.VECTORS. NAME:2 is
+        the column 2 of an array, from 0.
+units   "mm,MPa", "mm,N" and so on. Without it: the header's units, else m and Pa (see units.in_units_of).
 body    "lower" or "upper": the body on which the shear of the source acts.
 axis    the contact's normal from the lower body to the upper one: x, y, z, -x, -y, -z or three components.
 basis   "axes": the shear's components lie along x1 and x2. "lower", "upper": along t1, the x axis projected on the surface, and

@@ -27,7 +27,7 @@ def _plain(unit: str) -> str:
 
 
 class Units:
-    """Factors to SI units. given: "mm,MPa", "mm,N" or the like, which hold for all columns; headers: by name of the column."""
+    """Factors to SI units. given: "mm,MPa", "mm,N" and so on, for all columns; headers: by name of the column."""
 
     def __init__(self, given: Optional[str], headers: dict[str, str], name: str):
         self._name, self._headers, self._given = name, headers, {}
