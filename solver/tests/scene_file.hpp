@@ -41,6 +41,24 @@ class SceneFile : public ScratchFolder {
   Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
     return read_scene(write("scene.toml", text), overrides);
   }
+  /// The short scene under the pressure of the file p.csv, which gets this text; on 4 x 4 cells of 0.25 mm.
+  Scene pressed(const std::string& table, const std::vector<std::string>& more = {}) const {
+    write("p.csv", table);
+    std::string text = kShortScene;
+    text.erase(text.find("normal = 1000\n"), 14);
+    std::vector<std::string> overrides{"contact.pressure=file", "contact.pressure_file=p.csv",
+                                       "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return read(text, overrides);
+  }
+  /// The short scene with the heights of the file heights.csv, which gets this text, for an indenter.
+  Scene mapped(const std::string& heights, const std::string& spacing,
+               const std::vector<std::string>& overrides = {}) const {
+    write("heights.csv", heights);
+    std::string text =
+        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = " + spacing + "\n");
+    return read(text.erase(text.find("[grid]")), overrides);
+  }
 };
 
 }  // namespace slipstick::solver

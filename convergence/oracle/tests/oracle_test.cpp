@@ -174,7 +174,7 @@ Oracle expect_hertzs(const solver::Scene& scene) {
 }
 
 TEST(Oracle, EllipseIsHertzs) {
-  for (const double ratio : {1e-3, 0.1, 0.7, 1.5, 10.0, 100.0, 1000.0}) {
+  for (const double ratio : {1e-3, 0.1, 0.7, 1.0 + 1e-9, 1.0 + 1e-3, 1.5, 10.0, 100.0, 1000.0}) {
     SCOPED_TRACE(ratio);
     solver::Scene scene = example("ellipse");
     scene.surfaces.front().radius_1 = 0.01 * ratio;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <ostream>
-#include <utility>
-#include <vector>
 
 #include "solver/tests/limits.hpp"
 
@@ -135,13 +133,6 @@ TEST(StickFront, InNarrowRingsBeatsCounting) {
   }
 }
 
-TEST(StickFront, IsFittedOnAllRaysOfARingOfNearlyFourCells) {
-  const StickFront front = sample({.ring = 1.12}, 128).front();  // 3.8 cells
-  EXPECT_THAT(front.why_counted, IsEmpty());
-  EXPECT_EQ(front.fitted, 1.0);
-  EXPECT_LT(std::abs(front.radius - 0.5), std::abs(front.counted_radius - 0.5));
-}
-
 /// The jump of the angle on one of the axes does not matter either.
 TEST_P(MadeUpFront, TurnsWithTheContact) {
   constexpr Index n = 64;
@@ -189,30 +180,6 @@ TEST(StickFront, OfAQuarterOfTheRaysIsThatOfAll) {
       EXPECT_EQ(quarter.why_counted, whole.why_counted);
     }
   }
-}
-
-/// One cell that slips more than its images, or a pair that does, moves the front wherever it stands.
-TEST(StickFront, OfOneCellOfAMirroredPairIsTheSameOnEachSide) {
-  constexpr Index n = 64;
-  const Fields mirrored = mirror_images(sample({}, n));
-  const auto radius = [&](const std::vector<std::pair<Index, Index>>& disturbed) {
-    Fields fields = mirrored;
-    for (const auto& [i, j] : disturbed) {
-      for (const Index component : {Index{0}, n * n}) fields.slip[i * n + j + component] *= 8.0;
-    }
-    return fields.front().radius;
-  };
-  constexpr Index i = 44, j = 46, i_image = n - 1 - i, j_image = n - 1 - j;
-  ASSERT_GT(std::abs(mirrored.slip[i * n + j]), 0.0);
-  const double one = radius({{i, j}});
-  const double along1 = radius({{i, j}, {i_image, j}});
-  const double along2 = radius({{i, j}, {i, j_image}});
-  EXPECT_GT(std::abs(one / radius({}) - 1.0), 1e-6);
-  EXPECT_NEAR(radius({{i_image, j}}) / one, 1.0, 1e-12);
-  EXPECT_NEAR(radius({{i, j_image}}) / one, 1.0, 1e-12);
-  EXPECT_NEAR(radius({{i_image, j_image}}) / one, 1.0, 1e-12);
-  EXPECT_NEAR(radius({{i, j_image}, {i_image, j_image}}) / along1, 1.0, 1e-12);
-  EXPECT_NEAR(radius({{i_image, j}, {i_image, j_image}}) / along2, 1.0, 1e-12);
 }
 
 /// Slip that began within the stick area: the law's root lies there, and is believed up to half a cell.

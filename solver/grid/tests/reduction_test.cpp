@@ -187,20 +187,12 @@ constexpr Grid kQuadrant{3, 2, 0.5, 0.7, true};
 
 TEST(Mirror, WholeGridHoldsTheQuadrantsCells) {
   const Grid whole = whole_grid(kQuadrant);
+  expect_grid(quadrant_of(whole), kQuadrant);
   EXPECT_EQ(whole.n1, 6);
   EXPECT_EQ(whole.n2, 4);
   EXPECT_FALSE(whole.quadrant);
   for (Index i = 0; i < kQuadrant.n1; ++i) EXPECT_EQ(whole.x1(kQuadrant.n1 + i), kQuadrant.x1(i));
   for (Index j = 0; j < kQuadrant.n2; ++j) EXPECT_EQ(whole.x2(kQuadrant.n2 + j), kQuadrant.x2(j));
-}
-
-TEST(Mirror, QuadrantOfTheWholeGridIsTheSame) {
-  const Grid again = quadrant_of(whole_grid(kQuadrant));
-  EXPECT_EQ(again.n1, kQuadrant.n1);
-  EXPECT_EQ(again.n2, kQuadrant.n2);
-  EXPECT_EQ(again.h1, kQuadrant.h1);
-  EXPECT_EQ(again.h2, kQuadrant.h2);
-  EXPECT_TRUE(again.quadrant);
 }
 
 TEST(Mirror, UnfoldsFieldsByTheirSymmetry) {

@@ -26,24 +26,18 @@ constexpr double kModelRounding = 0x1p-40;
 
 class PressureFile : public SceneFile {
  protected:
-  /// 4 x 4 cells of 0.25 mm; the file holds some rows of them.
-  std::string complaint_about(const std::string& rows, const std::vector<std::string>& overrides = {}) const {
-    write("p.csv", "x1,x2,pressure\n" + rows);
-    return complaint([&] { pressure(overrides); });
-  }
-  NormalSolution pressure(std::vector<std::string> overrides = {}) const {
-    overrides.insert(overrides.begin(), {"contact.pressure=file", "contact.pressure_file=p.csv",
-                                         "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"});
-    std::string text = kShortScene;
-    text.erase(text.find("normal = 1000\n"), 14);
-    const Scene scene = read(text, overrides);
+  NormalSolution pressure(const std::string& table, const std::vector<std::string>& overrides = {}) const {
+    const Scene scene = pressed(table, overrides);
     return find_pressure(scene, make_model(scene), scene.steps[0]);
+  }
+  std::string complaint_about(const std::string& rows, const std::vector<std::string>& overrides = {}) const {
+    return complaint([&] { pressure("x1,x2,pressure\n" + rows, overrides); });
   }
 };
 
 TEST_F(PressureFile, IsReadToItsCells) {
-  write("p.csv", "pressure,x1,x2\n2e9,-0.000125,0.000375\n1e9,0.000125,0.000125\n");
-  const Eigen::ArrayXd p = pressure().pressure;
+  const Eigen::ArrayXd p =
+      pressure("pressure,x1,x2\n2e9,-0.000125,0.000375\n1e9,0.000125,0.000125\n").pressure;
   const double unit = 210e9 / 2.6 / 2.0;
   EXPECT_NEAR(p[1 * 4 + 3] * unit / 2e9, 1.0, kModelRounding);
   EXPECT_NEAR(p[2 * 4 + 2] * unit / 1e9, 1.0, kModelRounding);
@@ -51,7 +45,7 @@ TEST_F(PressureFile, IsReadToItsCells) {
 }
 
 TEST_F(PressureFile, MustFitTheGridAndTheLoad) {
-  EXPECT_THAT(complaint([&] { pressure(); }), says("p.csv", "cannot be read"));
+  EXPECT_THAT(complaint_about("", {"contact.pressure_file=no.csv"}), says("no.csv", "cannot be read"));
   const std::string good = "0.000125,0.000125,1e9\n";
   EXPECT_EQ(complaint_about(good), "");
   EXPECT_EQ(complaint_about(good, {"load.normal=62.5"}), "");  // 1e9 Pa on (0.25 mm)^2
@@ -75,11 +69,7 @@ TEST_F(PressureFile, HoldsACellOnce) {
 class HeightMapFile : public SceneFile {
  protected:
   Model model(const std::string& heights, const std::vector<std::string>& overrides = {}) const {
-    write("heights.csv", heights);
-    std::string text =
-        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 2e-5]\n");
-    text.erase(text.find("[grid]"));
-    return make_model(read(text, overrides));
+    return make_model(mapped(heights, "[1e-5, 2e-5]", overrides));
   }
 };
 

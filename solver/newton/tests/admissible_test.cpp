@@ -354,23 +354,6 @@ TEST(FrictionLinearised, CountsTheCellsThatChange) {
   EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
 }
 
-/// The count of the first linearisation must not depend on uninitialised memory.
-TEST(FreshTangentSpace, HasNothingFree) {
-  {
-    const TangentSpace used = [] {
-      TangentSpace space(2, 1000);
-      for (Index i = 0; i < 1000; ++i) space.set_line(i, 0.6, 0.8, 3.0, 1.0);
-      return space;
-    }();
-  }
-  const TangentSpace space(2, 1000);
-  for (const ArrayXd* field : {&space.f1, &space.f2}) EXPECT_TRUE((*field == 0.0).all());
-  for (const ArrayXf* field : {&space.stiffness, &space.scale, &space.shift}) {
-    EXPECT_TRUE((*field == 0.0F).all());
-  }
-  EXPECT_EQ(space.free.count(), 0);
-}
-
 TEST(PressuresLinearised, AreFreeInContact) {
   ArrayXd reachable(4);
   reachable << 1.0, 1.0, 1.0, 0.0;

@@ -234,28 +234,19 @@ TEST(GridEdge, IsLookedAtUnderFullCoupling) {
   EXPECT_EQ(follow_refusals(scene), "");
 }
 
-/// The contact is a sphere's, read from a file.
-class MappedSphere : public SceneFile {
- protected:
-  Scene mapped(Index cells, const std::vector<std::string>& overrides = {}) const {
+TEST_F(SceneFile, OfAMappedSphereHoldsTheContactOrIsRefused) {
+  const auto mapped_sphere = [&](Index cells, const std::vector<std::string>& overrides = {}) {
     const auto height = [&](Index i, Index j) {
       const double x1 = 1.5e-5 * static_cast<double>(2 * i + 1 - cells);
       const double x2 = 1.5e-5 * static_cast<double>(2 * j + 1 - cells);
       return (x1 * x1 + x2 * x2) / 0.036;
     };
-    write("heights.csv", table_of(cells, cells, height));
-    std::string text =
-        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [3e-5, 3e-5]\n");
-    text.erase(text.find("[grid]"));
-    return read(text, overrides);
-  }
-};
-
-TEST_F(MappedSphere, HoldsTheContactOrIsRefused) {
-  const ModelSolution generous = solve_in_model_units(mapped(48));
+    return mapped(table_of(cells, cells, height), "[3e-5, 3e-5]", overrides);
+  };
+  const ModelSolution generous = solve_in_model_units(mapped_sphere(48));
   for (Index cells = 46; cells >= 8; cells -= 2) {
     std::optional<ModelSolution> found;
-    const std::string message = complaint([&] { found = solve_in_model_units(mapped(cells)); });
+    const std::string message = complaint([&] { found = solve_in_model_units(mapped_sphere(cells)); });
     if (cells <= 32) {  // 0.978 mm of contact over 30 um a cell
       EXPECT_THAT(message, says("grid.extent", "heights.csv", "outermost")) << cells;
       continue;
@@ -263,25 +254,14 @@ TEST_F(MappedSphere, HoldsTheContactOrIsRefused) {
     ASSERT_TRUE(found) << message;
     EXPECT_NEAR(found->twist_angle / generous.twist_angle, 1.0, 1e-6);
   }
-  EXPECT_EQ(solve_in_model_units(mapped(16, {"upper.ends_at_grid_edge=true"})).status, Status::converged);
+  EXPECT_EQ(solve_in_model_units(mapped_sphere(16, {"upper.ends_at_grid_edge=true"})).status,
+            Status::converged);
 }
 
-class PressedEdge : public SceneFile {
- protected:
-  Scene pressed(const std::string& rows, const std::vector<std::string>& more = {}) const {
-    write("p.csv", "x1,x2,pressure\n" + rows);
-    std::string text = kShortScene;
-    text.erase(text.find("normal = 1000\n"), 14);
-    std::vector<std::string> overrides{"contact.pressure=file", "contact.pressure_file=p.csv",
-                                       "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"};
-    overrides.insert(overrides.end(), more.begin(), more.end());
-    return read(text, overrides);
-  }
-};
-
-TEST_F(PressedEdge, OfAPressureFileHasToBeTheBodys) {
+TEST_F(SceneFile, TheEdgeOfAPressureFileHasToBeTheBodys) {
   const std::string inside =
-      "0.000125,0.000125,1e9\n-0.000125,-0.000125,1e9\n0.000125,-0.000125,1e9\n-0.000125,0.000125,1e9\n";
+      "x1,x2,pressure\n0.000125,0.000125,1e9\n-0.000125,-0.000125,1e9\n0.000125,-0.000125,1e9\n-0.000125,0."
+      "000125,1e9\n";
   const std::string at_edge = inside + "0.000375,0.000125,1e9\n-0.000375,-0.000125,1e9\n";
   EXPECT_EQ(refusal(pressed(inside)), "");
   EXPECT_THAT(refusal(pressed(at_edge)), says("grid.extent = [0.001, 0.001]", "p.csv", "outermost"));
