@@ -73,27 +73,6 @@ TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
   EXPECT_EQ(exact[2].twist_angle, -1e-4);
 }
 
-// Under a small force f of the limit all sticks: the displacement goes with f, the energy lost with f^3
-// (Mindlin, Mason, Osmer and Deresiewicz 1952), up to parts of f.
-TEST(OracleHistory, ASmallForceHasAllItsDigits) {
-  for (const char* body : {"paper", "cone"}) {
-    Scene scene = without_contraction(example(body));
-    const double normal = *scene.steps.front().normal;
-    const double limit = scene.contact.friction.coefficient * normal;
-    const auto under = [&](double force) {
-      return oracles(pushed(scene, {{normal, force * limit}})).front();
-    };
-    const Oracle least = under(1e-15);
-    const Oracle small = under(1e-10);
-    for (const int axis : {0, 1}) {
-      EXPECT_NEAR(least.displacement[axis], 1e-5 * small.displacement[axis],
-                  1e-9 * std::hypot(least.displacement[0], least.displacement[1]))
-          << body;
-    }
-    EXPECT_NEAR(least.dissipated / small.dissipated, 1e-15, 1e-24) << body;
-  }
-}
-
 TEST(OracleHistory, TractionsOfAForceCarryIt) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     Scene scene = without_contraction(example(body));
@@ -135,13 +114,6 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
                 kHistoryTolerance * b.friction.reference_bound);
   }
-}
-
-/// A normal load that grows before there is any force leaves no trace.
-TEST(OracleHistory, AForceAfterAGrowingLoadIsFirstLoading) {
-  const Scene plain = without_contraction(example("paper"));
-  expect_the_same_state(oracles(pushed(plain, {{1000.0, 0.0}, {2000.0, 100.0}})).back(),
-                        oracles(pushed(plain, {{2000.0, 100.0}})).front(), 1.0);
 }
 
 TEST(OracleHistory, StandsWhereTheBodyStands) {

@@ -1,10 +1,8 @@
 #include "convergence/runs/path_uncertainty.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -66,16 +64,11 @@ TEST_F(PathOfLoads, ATwistOfConesOnOneAxisHasNoPath) {
   EXPECT_GT(path("[2e-4, 0.0]"), 0.0);
 }
 
-TEST(PathOfLoadsOnAFrictionMap, IsStatedBetweenTheTrueErrorAndTenTimesIt) {
+TEST_F(PathOfLoads, OnAFrictionMapIsStatedBetweenTheTrueErrorAndTenTimesIt) {
   Scene scene = paper_scene(37, 0.6);
   scene.grid.cells = {37, 31};
-  scene.contact.friction.map = std::filesystem::path(testing::TempDir()) / "path_of_friction_map.csv";
-  std::ofstream map(scene.contact.friction.map);
-  for (int i = 0; i < 37; ++i) {
-    for (int j = 0; j < 31; ++j) map << (j > 0 ? "," : "") << 0.4 + 0.05 * ((7 * i + 3 * j) % 17);
-    map << '\n';
-  }
-  map.close();
+  scene.contact.friction.map =
+      write("map.csv", table_of(37, 31, [](int i, int j) { return 0.4 + 0.05 * ((7 * i + 3 * j) % 17); }));
   scene.steps.assign(2, scene.steps.front());
   scene.steps[0].torsion = MomentRatio{0.0};
   scene.steps[0].force = scene.steps[1].force = {40.0, 10.0};
