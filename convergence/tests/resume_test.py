@@ -102,7 +102,7 @@ class ResumeTest(unittest.TestCase):
         with open(program, "ab") as file:
             file.write(b"x")
         self.assertIn("another build of slipstick", self.run_program(*small, *resume, program=program, code=2))
-        for place in range(2048, len(good), len(good) // 3):  # a damaged byte is detected, or lies outside the data
+        for place in range(2048, len(good), len(good) // 8):  # a damaged byte is detected, or lies outside the data
             self.checkpoint.write_bytes(good[:place] + bytes([good[place] ^ 0x10]) + good[place + 1:])
             end = subprocess.run(self.words(*small, *resume), cwd=self.folder, capture_output=True, text=True)
             self.assertIn(end.returncode, (0, 2), end.stderr)

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -39,23 +38,6 @@ Solution solved_under(const Scene& scene) {
 void expect_same_tractions(const Solution& a, const Solution& b, double factor = 1.0) {
   EXPECT_LE(relative_difference(a.traction, factor * b.traction), kSame);
   EXPECT_NEAR(a.twist_angle / (factor * b.twist_angle), 1.0, kSame);
-}
-
-TEST(FrictionLaw, TrescasSlippingCellsCarryItsStrength) {
-  const Solution solution = solved_under(scene_under(FrictionKind::tresca));
-  const ArrayXd size = norms(solution.traction);
-  EXPECT_GT(solution.stick_cells, 0);
-  for (Index cell = 0; cell < size.size(); ++cell) {
-    const bool slips = solution.pressure[cell] > 0.0 && solution.stick[cell] == 0.0;
-    EXPECT_TRUE(solution.pressure[cell] > 0.0 || size[cell] == 0.0);
-    EXPECT_TRUE(!slips || std::abs(size[cell] / kStrength - 1.0) <= 1e-9);
-  }
-  // The limit moment is the strength times the sum of r over the contact.
-  const ArrayXd x1 = cell_x1(solution.grid);
-  const ArrayXd x2 = cell_x2(solution.grid);
-  const ArrayXd contact = (solution.pressure > 0.0).cast<double>();
-  const double arms = (contact * (x1.square() + x2.square()).sqrt()).sum() * solution.grid.cell_area();
-  EXPECT_NEAR(solution.moment_limit / (kStrength * arms), 1.0, 1e-12);
 }
 
 /// A history at constant pressure follows Masing's rule: back to the load's negative the tractions turn over.

@@ -93,21 +93,6 @@ Scene homogeneous(Scene scene, bool layer) {
   return scene;
 }
 
-/// The difference scales with the thickness of a thin layer, and with the inverse third power of a thick
-/// one's one: the base answers a resultant by a translation, which changes no twist, and a moment like a
-/// dipole.
-TEST(BondedLayer, GoesFromTheBaseToTheLayer) {
-  for (const double modulus : {0.4, 3.0}) {
-    const double base = solved_scene(homogeneous(coated_scene(1.0, modulus), false)).twist_angle;
-    const double layer = solved_scene(homogeneous(coated_scene(1.0, modulus), true)).twist_angle;
-    const auto beyond = [&](double limit, double thickness) {
-      return solved_scene(coated_scene(thickness, modulus)).twist_angle / limit - 1.0;
-    };
-    EXPECT_NEAR(beyond(base, 2e-3) / beyond(base, 1e-3), 2.0, 0.02);
-    EXPECT_NEAR(beyond(layer, 100.0) / beyond(layer, 200.0), 8.0, 0.08);
-  }
-}
-
 /// The grid fits the softer of layer and base; the contact's size lies between the sizes on either of them.
 TEST(BondedLayer, NeedsNoExtent) {
   for (const auto& [thickness, modulus, poisson_ratio] :

@@ -2,12 +2,9 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/results/make_record.hpp"
-#include "convergence/results/record_text.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/solve.hpp"
 
@@ -90,37 +87,6 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
       for (const double error : {field.l1, field.l2, field.max}) EXPECT_TRUE(std::isfinite(error)) << name;
     }
   }
-}
-
-/// Known numbers of an ellipse are numbers, the others are null with a reason.
-TEST(Comparison, ResultOfAnEllipseSaysWhatIsExact) {
-  const solver::Scene ellipse = example("ellipse", {"grid.cells=[32,16]"});
-  const OracleAnswer exact = find_oracle(ellipse);
-  const SolveRecord record = make_record(ellipse, solver::solve(ellipse), exact);
-  const Json result = to_json(record);
-  for (const char* key : {"contact_radius", "peak_pressure", "approach", "moment_limit", "moment"}) {
-    EXPECT_TRUE(result["exact"][key].is_number()) << key;
-  }
-  for (const char* key :
-       {"moment_error", "moment_limit_error", "contact_radius_error", "peak_pressure_error"}) {
-    EXPECT_TRUE(result[key].is_number()) << key;
-  }
-  for (const char* key :
-       {"twist_angle", "twist", "stick_radius", "stick_ratio", "dissipated", "displacement"}) {
-    EXPECT_TRUE(result["exact"][key].is_null()) << key;
-    EXPECT_EQ(result["exact"][std::string(key) + "_reason"], exact.oracle->only_normal) << key;
-  }
-  for (const char* key : {"twist_error", "stick_radius_error", "stick_ratio_error", "dissipated_error"}) {
-    EXPECT_TRUE(result[key].is_null()) << key;
-    EXPECT_EQ(result[std::string(key) + "_reason"], exact.oracle->only_normal) << key;
-  }
-  for (const char* region : {"averaged", "stick_edge", "contact_edge", "inside", "outside"}) {
-    EXPECT_TRUE(result["traction_error"][region]["l1"].is_null()) << region;
-  }
-  EXPECT_TRUE(result["pressure_error"]["l1"].is_number());
-  EXPECT_NE(solve_text(record).find("exact answer     normal contact only"), std::string::npos)
-      << solve_text(record);
-  EXPECT_EQ(solve_text(record).find("traction error"), std::string::npos);
 }
 
 }  // namespace

@@ -116,17 +116,6 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   }
 }
 
-TEST(OracleHistory, StandsWhereTheBodyStands) {
-  Scene scene = twisted(example("paper"), {0.7, -0.2});
-  const std::vector<Oracle> centred = oracles(scene);
-  scene.surfaces.front().at = {1e-4, -2e-4};
-  const std::vector<Oracle> shifted = oracles(scene);
-  for (std::size_t i = 0; i < centred.size(); ++i) {
-    expect_the_same_state(shifted[i], centred[i], 1.0);
-    EXPECT_EQ(shifted[i].place.centre, (std::array{1e-4, -2e-4}));
-  }
-}
-
 /// Steel bodies on each other: 1/G = 2 * 2 (1 + nu)/E.
 TEST(OracleHistory, AClosedCycleOfTorsionLosesItsLoop) {
   constexpr double shear_modulus = 210e9 / (4.0 * 1.3);

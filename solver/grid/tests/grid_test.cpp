@@ -2,14 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <utility>
-
-#include "solver/solve.hpp"
-#include "solver/tests/paper_scene.hpp"
-
 namespace slipstick::solver {
 namespace {
 
@@ -44,32 +36,6 @@ TEST(CountedArea, AnEdgeHasTheSidesThatItHas) {
   EXPECT_DOUBLE_EQ(all.counted, 30 * 0.125);
   EXPECT_NEAR((all.counted - all.corrected) / (one.counted - one.corrected), 22.0 / 4.0, 1e-12);
   EXPECT_EQ(counted_area(grid, inside, 0.0).corrected, all.counted);
-}
-
-/// Spheres on grids of any place and size: Hertz's radius and the exact stick radius (theory.md) are known.
-TEST(CountedArea, CoversExactAreasOfSpheres) {
-  constexpr double kStickRatio = 0.8135681261276495;  // at half of the limit moment: Eq. (4), Lubkin 1951
-  std::mt19937_64 random(20261125);
-  std::uniform_real_distribution<double> across(14.0, 60.0);
-  int close = 0;
-  double counted = 0.0;
-  double corrected = 0.0;
-  constexpr int kDraws = 40;
-  for (int k = 0; k < kDraws; ++k) {
-    Scene scene = paper_scene(64, 0.5);
-    const double size = 64.0 * 2.0 * paper::kContactRadius / across(random);
-    scene.grid.extent = {size, size};
-    const Solution solution = solve(scene);
-    for (const auto& [area, ratio] :
-         {std::pair{solution.contact_area, 1.0}, std::pair{solution.stick_area, kStickRatio}}) {
-      const double exact = std::numbers::pi * std::pow(ratio * paper::kContactRadius, 2);
-      close += static_cast<int>(std::abs(area.corrected - exact) <= area.uncertainty);
-      counted += (area.counted - exact) / area.counted;
-      corrected += (area.corrected - exact) / area.counted;
-    }
-  }
-  EXPECT_GE(close, 0.985 * 2 * kDraws);
-  EXPECT_LT(std::abs(corrected), 0.3 * counted);
 }
 
 }  // namespace

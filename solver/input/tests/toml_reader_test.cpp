@@ -74,27 +74,6 @@ TEST_F(Tables, AreReadAsOverridesOfAnotherFile) {
   const SceneReader other(write("other.toml", ""), {"load.force=[1e-08, 2]", "load.name='a b'", "on=true"});
 }
 
-TEST_F(Tables, AreToldFromOtherValues) {
-  for (const char* value : {"3", "\"text\"", "[1, 2]", "[]", "[{}, 1]"}) {
-    SceneReader other = reader(std::string("step = ") + value);
-    EXPECT_THAT(complaint([&] { other.count("step"); }),
-                says("steps.toml:1", "step = ", "allowed: tables", "[[step]]"))
-        << value;
-    EXPECT_EQ(other.is_array("step"), value[0] == '[');
-  }
-  EXPECT_FALSE(reader("").is_array("step"));
-}
-
-TEST_F(Tables, NameTheNearestKeyOfTheSameTable) {
-  SceneReader steps = reader("[[step]]\nforce = 1\n[[step]]\nfrce = 2\n");
-  for (const char* key : {"step[0].force", "step[1].force"}) steps.find_number(key, kFinite);
-  EXPECT_THAT(complaint([&] { steps.reject_unknown(); }),
-              says("steps.toml:4", "step[1].frce = 2", "nearest known one is step[1].force"));
-  SceneReader asked = reader("[[step]]\nfrce = 1\n");
-  EXPECT_THAT(complaint([&] { asked.number("step[0].force", kFinite); }),
-              says("step[0].frce = 1", "nearest known one is step[0].force"));
-}
-
 TEST_F(Tables, AreOverriddenByIndex) {
   SceneReader steps = reader(kSteps, {"step[0].force=7", "step[0].twist=8", "step[2].part[0].length=9"});
   EXPECT_EQ(steps.count("step"), 3);

@@ -64,38 +64,12 @@ TEST(Resolution, OfAStripHasBothAxesInTheMean) {
   }
 }
 
-// A disc that sticks up to its edge turns like a bonded punch. A slip ring hides the edge, the more the
-// wider.
-TEST(Resolution, OfADiscFallsWithTheWidthOfItsSlipRing) {
-  const Grid grid{80, 80, 1.0, 1.0};
-  LoadStep loads = disc_under_moment(grid, 36.0, 0.5);
-  loads.is_coulomb = false;
-  double last = std::numeric_limits<double>::infinity();
-  for (const double stick_radius : {36.0, 35.0, 33.0, 28.0}) {
-    const ArrayXd stick =
-        (cell_x1(grid).square() + cell_x2(grid).square() < stick_radius * stick_radius).cast<double>();
-    TangentialSolution tangential;
-    tangential.stick = stick;
-    tangential.traction = ArrayXd::Zero(2 * grid.cells());
-    const double step =
-        resolution({}, {}, grid, loads, tangential, counted_area(grid, loads.problem.friction_bound)).step;
-    EXPECT_LT(step, last) << stick_radius;
-    last = step;
-  }
-}
-
 TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
   const Grid grid{20, 20, 1.0, 1.0};
   for (const double inner : {0.0, 5.0}) {  // the body turns about a point of the contact, or about none
     const LoadStep loads = disc_under_moment(grid, 9.0, 1.0 - 1e-9, inner);
     EXPECT_TRUE(std::isinf(resolution_of(grid, loads, ArrayXd::Zero(400)).open.twist)) << inner;
   }
-}
-
-TEST(Resolution, OfAnImposedTwistIsTheMeshAlone) {
-  Scene scene = paper_scene(32, 0.0);
-  scene.steps[0].torsion = Twist{1.0};  // far beyond where all has slipped
-  EXPECT_LT(solve_in_model_units(scene).resolution.uncertainty, 0.01);
 }
 
 }  // namespace
