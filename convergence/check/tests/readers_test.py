@@ -1,4 +1,4 @@
-"""readers_test.py PROGRAM SCENES: one field of the paper's sphere, written as programs of many kinds write it. The result
+"""readers_test.py PROGRAM: one field of the paper's sphere, written as programs of many kinds write it. The result
 is the same field to the last digit, or a refusal that names the reason."""
 
 import json
@@ -15,7 +15,7 @@ try:
 except ImportError:
     h5py = None
 
-PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve() / "paper.toml"
+PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(__file__).resolve().parents[2] / "scenes/paper.toml"
 NAMES = ("x1", "x2", "pressure", "q1", "q2")
 HEADER = ",".join(NAMES)
 
