@@ -141,7 +141,9 @@ class GateProgram(ProgramTest):
 
     def test_names_the_largest_part_of_the_error(self):
         self.write("coarse.toml", gate("coarse", "below = 1e-6", quantity="twist_error"))
-        self.gate("coarse.toml", code=1, says=("discretisation", "--only coarse"))
+        self.gate("coarse.toml", code=1, says=("error: discretisation", "--only coarse"))
+        loose = gate("loose", "below = 1e-6", quantity="twist_error").replace("16] }", "16], 'solver.tolerance' = 0.1 }")
+        self.gate(self.write("loose.toml", loose), code=1, says="error: iteration")
 
     def test_judges_studies(self):
         self.write("study.toml", f"scene = '{PAPER}'\ncells = [12, 16]\n")

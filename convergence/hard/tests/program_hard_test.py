@@ -1,0 +1,55 @@
+"""program_hard_test.py PROGRAM: `slipstick hard` varies keys, judges each case, its views and its finer meshes, and compares methods."""
+
+from program_run import SCENES, ProgramTest
+
+SMALL = '[family.set]\n"grid.cells" = [12, 12]\n'
+RATIOS = "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n"
+
+
+def family(rest, scene="paper"):
+    return f"[[family]]\nname = 'small'\nwhy = 'made up'\nscene = '{SCENES / scene}.toml'\n{rest}"
+
+
+class Hard(ProgramTest):
+    def hard(self, families, *options, code=0):
+        self.write("families.toml", families)
+        return self.text_and_result("hard", "families.toml", "--output", "kept", *options, code=code)[1]
+
+    def test_varies_keys_in_all_combinations(self):
+        rows = self.hard(family(SMALL + "[[family.vary]]\nkey = 'contact.friction'\nvalues = [0.1, 0.2]\n"
+                                "[[family.vary]]\nkey = 'solver.method'\nvalues = ['coulomb', 'paper']\n"), "--once")["rows"]
+        self.assertEqual(len({row["case"] for row in rows}), 4)
+        self.assertRegex("; ".join(rows[1]["set"]), "^grid.cells=.*; contact.friction=0.1; solver.method=.*paper")
+
+    def test_compares_with_finer_meshes(self):
+        """The distance from the answer on four times the cells, which have as many times the parts of each step."""
+        row = self.hard(family('[family.set]\n"grid.cells" = [24, 12]\n', "patches"))["rows"][0]
+        twists = []
+        extent = []
+        for finer in (1, 2, 4):
+            sets = [word for key in (f"grid.cells=[{24 * finer},{12 * finer}]", f"solver.substeps={finer}", *extent)
+                    for word in ("--set", key)]
+            result = self.result("solve", str(SCENES / "patches.toml"), *sets)
+            twists.append(result["twist_angle"])
+            extent = extent or [f"grid.extent={[n * h for n, h in zip(result['cells'], result['cell_size'])]}"]
+        self.assertAlmostEqual(row["finer_meshes.error"], abs(twists[0] / twists[2] - 1), delta=1e-7)
+        self.assertAlmostEqual(row["finer_meshes.change"], abs(twists[1] / twists[2] - 1), delta=1e-7)
+
+    def test_judges_each_case_and_its_views(self):
+        result = self.hard(family(SMALL + '"solver.tolerance" = 1e-10\n' + RATIOS)
+                           + family("[[family.vary]]\nkey = 'solver.max_iterations'\nvalues = [1]\n"), code=1)
+        self.assertEqual(result["counts"], {"certified": 1, "refused": 1, "not_converged": 1, "wrong": 0})
+        views = result["rows"][0]["variants"]
+        self.assertEqual({*views}, {"mirrored", "turned", "shifted", "in_other_units", "exchanged", "two_threads"})
+        self.assertLessEqual(max(views.values()), 1e-10, views)
+        self.assertIn("gross slip", result["rows"][1]["reason"])
+
+    def test_compares_methods(self):
+        result = self.hard(family(SMALL + RATIOS), "--once", "--beside", "paper")
+        self.assertEqual(result["methods"]["paper"],
+                         {"agrees": 1, "refused": 1, "not_converged": 0, "other_direction": 0, "other_answer": 0})
+        row = result["rows"][0]
+        beside = row["methods"]["paper"]
+        self.assertEqual(beside["verdict"], "agrees")
+        self.assertGreater(beside["difference"], 0)  # another method, not the first again
+        self.assertGreater(beside["operator_applications"], row["operator_applications"])
