@@ -35,7 +35,7 @@ def also(scene, *settings):
 
 
 def example(name, cells=32, *settings):
-    """The words of a scene of convergence/scenes/, on so many cells along x1."""
+    """The words of a scene of convergence/scenes/ with `cells` cells along x1."""
     return also((SCENES / f"{name}.toml",), f"grid.cells=[{cells},{cells // 2 if name == 'ellipse' else cells}]", *settings)
 
 
@@ -113,7 +113,7 @@ class CheckTest(unittest.TestCase):
 
     def bad(self, scene, field, *options, breaks=(), says=".", cause="", found=None, **keys):
         """A bad field. breaks: quantities that do not hold; says: an expression in the reason; cause: a part of the likely cause
-        with its number `found` in place of {}, in two digits; there is none where it is None."""
+        with {} in place of its number, which is `found` in two digits; None: no cause is named."""
         result = check(scene, field, *options, **keys)
         self.assertEqual(result["verdict"], "bad", result["why"])
         for quantity in breaks:

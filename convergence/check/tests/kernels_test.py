@@ -104,7 +104,7 @@ class Kernels(CheckTest):
             self.assertFalse(any(each["name"].startswith(POISSON) and "instead" in each["name"] for each in tried))
 
     def test_none_is_wrong_in_the_right_field(self):
-        """Which a wrong twist makes bad."""
+        """A wrong twist makes the field bad."""
         for scene in (ELLIPSE, SPHERE, UNLIKE):
             result = self.good(scene, made(scene))
             self.assertTrue(result["discrete"]["holds"])

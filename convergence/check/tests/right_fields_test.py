@@ -117,12 +117,12 @@ class Right(CheckTest):
             self.assertNotIn("Coulomb", check(scene, coulomb)["text"].partition("likely")[0])
 
     def test_cells_that_the_edge_cuts_may_carry_a_part_of_the_strength(self):
-        """Means of a finer solve."""
+        """The field has the means of a finer solve."""
         settings = (*LAWS["Tresca's law"], ratio(0.7), "grid.extent=[1.9564e-3,1.9564e-3]", "upper.at=[5.223e-5,-2.555e-5]")
         self.good(example("paper", 32, *settings), means(solved(example("paper", 96, *settings)), 1.9564e-3 / 32, 9))
 
     def test_empty_cells_do_not_matter(self):
-        """However many a file has, and on which side."""
+        """A file may have any number of them, on any side."""
         scene = example("paper", 24, "load.twist=2e-3", "load.displacement=[0,0]")
         rows = solved(scene)
         right = check(scene, rows)["yardstick"]
@@ -157,7 +157,7 @@ class Right(CheckTest):
         self.good(example("paper"), rows, digits=[17, 17, 1, 17, 17])
 
     def test_noise(self):
-        """Of 0.03 to 0.2 % in pressure and tractions."""
+        """Pressure and tractions have noise of 0.03 to 0.2 %."""
         for scene in (example("paper", 64, ratio(0.3)), example("paper", 32, ratio(0.6)), example("ellipse", 64, ratio(0.9))):
             for size in (3e-4, 1e-3, 2e-3):
                 noise = np.random.default_rng(1).normal(1, size, solved(scene).shape)
@@ -165,8 +165,8 @@ class Right(CheckTest):
                 self.assertFalse(self.good(scene, solved(scene) * noise)["discrete"]["holds"])
 
     def test_at_limits(self):
-        """Next to the limit moment, where all samples slip up to rounding. With a cell that carries next to nothing: the tolerance of
-        the normal contact decides whether it touches. By the paper's method on a circle: frozen directions fade with the mesh."""
+        """Next to the limit moment all samples slip up to rounding. A cell may carry next to nothing: the tolerance of the normal
+        contact decides whether it touches. By the paper's method frozen directions fade with the mesh on a circle."""
         for part in ("0.9999", "0.99999", "0.999999"):
             rows, solution = solve(example("paper", 48, ratio(part)))
             self.good(example("paper", 48, ratio(part)), rows, twist=solution["twist_angle"])
@@ -287,8 +287,8 @@ class Grid(CheckTest):
         np.testing.assert_allclose(result["cell_size"], self.SIZE, within)
 
     def test_is_found_from_positions_alone(self):
-        """Whatever their order, offset and count of digits: pressure and tractions are judged in each cell. Round numbers have no
-        rounding. Cells and whole rows of them may be missing. Patches may be far apart."""
+        """Their order, offset and count of digits do not matter: pressure and tractions are judged in each cell. Round numbers have no
+        rounding. Cells and whole rows of cells may be missing. Patches may be far apart."""
         for digits in (17, 10, 4):
             moved = np.random.default_rng(3).permutation(self.rows) + [-7.1e-6, 3.3e-6, 0, 0, 0]
             self.assert_grid(self.good(self.scene, moved, digits=[digits, digits, 17, 17, 17]), 1e-3)
@@ -303,8 +303,8 @@ class Grid(CheckTest):
         self.assertEqual(check(self.scene, apart[low ^ high])["cells"], [cells + 60 for cells in self.cells])
 
     def test_the_row_that_does_not_fit_is_named(self):
-        """Where one digit too many makes a grid of any size, before anything is held for each cell. Long and thin cells are those of
-        columns in different units."""
+        """One digit too many makes a grid of any size: the row is named before memory is taken for each cell. Columns in different
+        units make long and thin cells."""
         few = self.rows[self.index[0] < 3]
         for rows, changes, words in (
                 (self.rows, {(16, 0): self.rows[16, 0] + 1.5e-5}, "row 17.*x1 = "),

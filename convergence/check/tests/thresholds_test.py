@@ -37,7 +37,7 @@ class Thresholds(CheckTest):
 
     def assert_threshold(self, quantity, allowed, within, made):
         """A field with an error a little below the allowed one holds, with one a little above it does not. made: the field with an
-        error; `within` of which its value is known."""
+        error, whose value is known to `within`."""
         for times in (BELOW, ABOVE):
             item = judged(check(SPHERE, made(times * allowed)), quantity)
             self.assertAlmostEqual(item["value"], times * allowed, delta=within)
@@ -71,13 +71,13 @@ class Thresholds(CheckTest):
             self.assertEqual(item["holds"], abs(times) < 1, item)
 
     def test_friction_bound_by_a_thousandth(self):
-        """In any one cell."""
+        """It is allowed in any one cell."""
         largest = np.arange(len(self.rows)) == sizes(self.rows).argmax()
         self.assert_threshold("friction_bound", 1e-3, 1e-6, lambda error: scaled(
             self.rows, np.where(largest, (1 + error) / self.part, 1)))
 
     def test_friction_by_a_thousandth_and_the_mesh(self):
-        """The median of the ring; of the mesh twice what right fields show."""
+        """The median of the ring is judged; the mesh is allowed twice the error of right fields."""
         allowed = self.allowed(self.rows, "friction")
         self.assertGreaterEqual(allowed, 1e-3)
         finer = example("paper", 64)

@@ -8,7 +8,7 @@ from checks import (CHECK, LAWS, LAYERS, MPA, CheckTest, also, check, example, e
 
 
 class OnCoarseMeshes(CheckTest):
-    """Which account for more."""
+    """Coarse meshes account for more."""
     PARTS = (("paper", 64, 0.3), ("paper", 32, 0.6), ("ellipse", 64, 0.3), ("cone", 32, 0.6))
     SCENES = [example(name, cells, ratio(part)) for name, cells, part in PARTS]
 

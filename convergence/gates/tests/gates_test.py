@@ -60,7 +60,7 @@ class Outcomes(MadeGates):
         self.assertEqual([row["factor"] for row in rows], [1.5, 2, 0, 1.5, None])
 
     def test_of_missing_numbers(self):
-        """They fail with the reason beside them, or with the nearest name. An expected failure must be one of the number."""
+        """They fail with the reason that the result gives, or with the nearest name. A misspelt number is no expected failure."""
         result = {"twist_error": None, "twist_error_reason": "not axisymmetric", "traction": None,
                   "traction_reason": "no exact tractions", "moment": 1}
         rows, _ = self.judged(result, gate("twist_error", below=1) + gate("twist_error", id="word", equals="asymptotic")
@@ -81,7 +81,7 @@ class Outcomes(MadeGates):
         self.assertIn("did not reach its tolerance: ", rows["twist_error"]["why"])
 
     def test_of_gates_that_are_narrower_than_ten_times_reference_and_spread(self):
-        """Which counts for errors only, and where a result file states it; the nearest one does."""
+        """The reference counts for errors only, and where a result file states it; the nearest one counts."""
         small = {"below": 0.9e-6}
         result = {"exact": {"relative_uncertainty": 3e-8}, "x_error": 1e-9, "gap": 1e-9,
                   "unknown": {"reference_uncertainty": None, "y_error": 1e-9},
@@ -126,7 +126,7 @@ class PublishedNumbers(MadeGates):
         return list(rows.values()), text
 
     def test_agree_within_half_a_unit_of_the_last_digit(self):
-        """Which our error and that of the argument widen. The published number may be a factor or the inverse of ours. A fraction is
+        """Our error and the argument's error widen this interval. The published number may be a factor or the inverse of ours. A fraction is
         exact."""
         rows, _ = self.compared(
             *(({"published": text}, value, None, "passed" if off == 0.9 else "failed") for text, half, number in (

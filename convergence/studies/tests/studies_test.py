@@ -1,4 +1,4 @@
-"""studies_test.py PROGRAM: orders, budgets and limits that `slipstick study` finds on small meshes, and what it refuses."""
+"""studies_test.py PROGRAM: orders, budgets and limits that `slipstick study` finds on small meshes, and its refusals."""
 
 import math
 import signal

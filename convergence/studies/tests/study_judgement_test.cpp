@@ -187,7 +187,7 @@ class Judged : public testing::Test {
     }
   }
 
-  /// The judgement, with so many failed runs. Every null has a reason.
+  /// The judgement; `failed`: the number of failed runs. Every null has a reason.
   Json judged(int failed) const {
     Json json = made_.judged();
     EXPECT_EQ(json["failed_runs"]["count"], failed);

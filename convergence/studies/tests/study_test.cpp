@@ -1,5 +1,5 @@
-// What studies rest on: errors of tractions by region, expected orders, solves in processes of their own.
-// studies_test.py has the studies themselves.
+// Errors of tractions by region, expected orders, and solves in processes of their own. studies_test.py tests
+// studies as a whole.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
