@@ -7,6 +7,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from ..errors import InputError
+from .displacement import KERNELS
 from .field import Array
 from .measures import Bodies
 from .right import Right
@@ -206,8 +207,9 @@ def _kernels(examined: Examined, request: Mapping[str, Any], wrong: set[str]) ->
     motion, scatter = examined.motion, examined.number("stick_motion")
     if motion is None or scatter is None or "stick_motion" not in wrong:
         return
-    judge, kernels = examined.judge, examined.kernels
-    assert kernels is not None and judge.bodies is not None
+    judge = examined.judge
+    kernels = judge.kernels([examined.values], KERNELS)[0]
+    assert judge.bodies is not None
 
     def scatter_with(bodies: Bodies, **mistake: Any) -> float:
         u = kernels.displacement(bodies, **mistake)

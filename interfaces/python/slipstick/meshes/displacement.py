@@ -17,9 +17,14 @@ Gauss rule, too.
 """
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
+import numpy.typing as npt
 
 from .field import Array, Indices
+
+Single = npt.NDArray[np.float32]
 
 KERNELS = ("r", "t11", "t12", "v1", "v2", "even")
 
@@ -27,59 +32,67 @@ KERNELS = ("r", "t11", "t12", "v1", "v2", "even")
 _FAR = 3.0
 #: Barycentric coordinates of Gauss' rule of degree 2.
 _GAUSS = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
-#: Pairs of a point and a quadrature point in one block: 30 MB an array.
+#: Pairs of a place and a quadrature point in one block: 16 MB an array.
 _BLOCK = 4_000_000
 
 
-def integrals(places: Array, corners: Array, densities: Array) -> Array:
-    """The six integrals of each density at each place.
+def integrals(places: Array, corners: Array, densities: Array, kernels: Sequence[str] = KERNELS[:5]) -> Array:
+    """The integrals of each density at each place.
 
     places (n, 2), m. corners (m, 3, 2), m, in any orientation. densities (m, 3, k): k linear densities by their values at the
-    corners. Returns (6, n, k), in the order of KERNELS, in m times the density's unit.
+    corners. Returns (kernels, n, k), in m times the density's unit. Far triangles are summed in single precision, about 1e-6 of the
+    whole.
     """
     edge1, edge2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     double = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0]
     sizes = np.sqrt(np.max(np.sum((corners - np.roll(corners, 1, axis=1))**2, axis=2), axis=1))
     middles = corners.mean(axis=1)
+    unit = np.abs(corners - middles.mean(axis=0)).max()  # keeps cubes within the range of single precision
     points = np.einsum("gc,mcd->mgd", _GAUSS, corners).reshape(-1, 2)
     weighted = (np.einsum("gc,mck->mgk", _GAUSS, densities) * np.abs(double)[:, None, None] / 6).reshape(len(points), -1)
-    result = np.empty((len(KERNELS), len(places), densities.shape[2]))
+    scale = np.maximum(np.abs(weighted).max(axis=0), np.finfo(float).tiny)
+    weighted = (weighted / scale).astype(np.float32)
+    scale = scale / unit
+    result = np.empty((len(kernels), len(places), densities.shape[2]))
     step = max(1, _BLOCK // max(1, len(points)))
     for start in range(0, len(places), step):
         block = places[start:start + step]
-        away = np.sqrt(np.sum((block[:, None] - middles)**2, axis=2))
-        near = away < _FAR * sizes
-        kernels = _kernels(block[:, None] - points)
-        part = result[:, start:start + step]
-        for kernel, values in enumerate(kernels):
-            values.reshape(len(block), -1, len(_GAUSS))[near] = 0
-            part[kernel] = values @ weighted
+        near = np.sum((block[:, None] - middles)**2, axis=2) < (_FAR * sizes)**2
         row, triangle = np.nonzero(near)
-        closed = _near(block[row], corners[triangle], densities[triangle], np.sign(double)[triangle])
-        for kernel in range(len(KERNELS)):
+        closed = _near(block[row], corners[triangle], densities[triangle], np.sign(double)[triangle], kernels)
+        x = [((block[:, d, None] - points[:, d]) / unit).astype(np.float32) for d in (0, 1)]
+        part = result[:, start:start + step]
+        for kernel, values in enumerate(_far(*x, kernels)):
+            values.reshape(len(block), -1, len(_GAUSS))[near] = 0
+            part[kernel] = (values @ weighted) * scale
             np.add.at(part[kernel], row, closed[kernel])
     return result
 
 
-def _kernels(x: Array) -> list[Array]:
-    x1, x2 = x[..., 0], x[..., 1]
+def _far(x1: Single, x2: Single, kernels: Sequence[str]) -> Iterator[Single]:
+    """The kernels of vectors (x1, x2), one after another."""
     r2 = x1 * x1 + x2 * x2
-    np.maximum(r2, np.finfo(float).tiny, out=r2)
+    np.maximum(r2, np.float32(1e-12), out=r2)
     inverse = 1 / np.sqrt(r2)
-    cube = inverse / r2
-    product = x1 * x2 * cube
-    return [inverse, x1 * x1 * cube, product, x1 / r2, x2 / r2, np.abs(product)]
+    for kernel in kernels:
+        if kernel == "r":
+            yield inverse.copy()
+        elif kernel in ("v1", "v2"):
+            yield (x1 if kernel == "v1" else x2) / r2
+        else:
+            value = x1 * (x1 if kernel == "t11" else x2) / r2 * inverse
+            yield np.abs(value) if kernel == "even" else value
 
 
-def _near(places: Array, corners: Array, densities: Array, orientation: Array) -> Array:
-    """The integrals of pairs of a place (n, 2) and a triangle (n, 3, 2) with densities (n, 3, k): (6, n, k)."""
+def _near(places: Array, corners: Array, densities: Array, orientation: Array, kernels: Sequence[str]) -> Array:
+    """The integrals of pairs of a place (n, 2) and a triangle (n, 3, 2) with densities (n, 3, k): (kernels, n, k)."""
     around = corners - places[:, None]
     at_place, gradient = _linear(around, densities)
-    result = np.zeros((len(KERNELS), len(places), densities.shape[2]))
+    result = np.zeros((len(kernels), len(places), densities.shape[2]))
     for corner in range(3):
-        result += _edge(around[:, corner], around[:, (corner + 1) % 3], at_place, gradient)
+        result += _edge(around[:, corner], around[:, (corner + 1) % 3], at_place, gradient, kernels)
     result *= orientation[:, None]
-    result[3:5] *= -1  # the kernels' x points from the traction to the place
+    result[[kernel in ("v1", "v2") for kernel in kernels]] *= -1  # there x points from the traction to the place
     return result
 
 
@@ -104,8 +117,8 @@ def _frame(start: Array, end: Array) -> tuple[Array, Array, Array, Array]:
     return normal * turned, along * turned, distance, position
 
 
-def _edge(start: Array, end: Array, at_origin: Array, gradient: Array) -> Array:
-    """The part of one edge in the integrals, for polar coordinates about the origin: (6, n, k). In the edge's frame phi is the angle
+def _edge(start: Array, end: Array, at_origin: Array, gradient: Array, kernels: Sequence[str]) -> Array:
+    """The part of one edge in the integrals, for polar coordinates about the origin: (kernels, n, k). In the edge's frame phi is the angle
     from n, and R = d/cos(phi)."""
     normal, tangent, distance, position = _frame(start, end)
     divisor = np.where(distance > 0, distance, 1.0)  # an edge whose line meets the origin sees no angle and gives nothing
@@ -130,9 +143,17 @@ def _edge(start: Array, end: Array, at_origin: Array, gradient: Array) -> Array:
     def product(i: int, j: int) -> Array:
         return (n[i] * n[j])[:, None] * nn + (n[i] * t[j] + t[i] * n[j])[:, None] * nt + (t[i] * t[j])[:, None] * tt
 
-    return np.stack([total(log, log, secant), product(0, 0), product(0, 1),
-                     n[0][:, None] * one_n + t[0][:, None] * one_t, n[1][:, None] * one_n + t[1][:, None] * one_t,
-                     _even(normal, tangent, distance, position, at_origin, gradient)])
+    def integral(kernel: str) -> Array:
+        if kernel == "r":
+            return total(log, log, secant)
+        if kernel == "even":
+            return _even(normal, tangent, distance, position, at_origin, gradient)
+        if kernel in ("v1", "v2"):
+            axis = int(kernel[1]) - 1
+            return n[axis][:, None] * one_n + t[axis][:, None] * one_t
+        return product(int(kernel[1]) - 1, int(kernel[2]) - 1)
+
+    return np.stack([integral(kernel) for kernel in kernels])
 
 
 #: Abscissas and weights on [0, 1] of Gauss' rule along a part of an edge.

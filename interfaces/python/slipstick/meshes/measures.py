@@ -1,13 +1,13 @@
 """The numbers by which a field on a mesh is judged: each is zero for the right answer on an infinitely fine mesh."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
-from .displacement import integrals
+from .displacement import KERNELS, integrals
 from .field import Array
 from .patches import Patches
 from .right import Right
@@ -63,7 +63,7 @@ class Bodies:
 @dataclass(frozen=True)
 class Kernels:
     """The integrals of pressure and tractions at chosen rows of a field. stick, slip: those of the rows that stick and slip in the
-    right answer. of_p, of_q1, of_q2 (6, n): in the order of displacement.KERNELS; own (n, 2): the tractions there."""
+    right answer. values (kernels, n, 3): the integrals of pressure, q1 and q2; own (n, 2): the tractions there."""
 
     places: Array
     weights: Array
@@ -73,17 +73,14 @@ class Kernels:
 
     def displacement(self, bodies: Bodies, cross: float = 1.0, even: bool = False, swapped: bool = False) -> Array:
         """The tangential displacement (n, 2), m. cross, even, swapped: the mistakes of kernels that causes.py tries."""
-        (_, p, _, _, _, _), (r1, a1, c1, _, _, e1), (r2, a2, c2, _, _, e2) = self._parts()
+        (r1, a1, c1), (r2, a2, c2) = self.values[:3, :, 1], self.values[:3, :, 2]
         v1, v2 = self.values[3, :, 0], self.values[4, :, 0]
         d1, d2 = r1 - a1, r2 - a2  # kernel x2^2/r^3
         k11, k22 = (d1, a2) if swapped else (a1, d2)
-        k12 = (e1, e2) if even else (c1, c2)
+        k12 = (self.values[5, :, 1], self.values[5, :, 2]) if even else (c1, c2)
         u1 = bodies.normal * r1 + bodies.shear * (k11 + cross * k12[1]) - bodies.coupled * v1
         u2 = bodies.normal * r2 + bodies.shear * (k22 + cross * k12[0]) - bodies.coupled * v2
         return np.column_stack([u1, u2]) + bodies.spring * self.own
-
-    def _parts(self) -> tuple[Array, Array, Array]:
-        return self.values[:, :, 0], self.values[:, :, 1], self.values[:, :, 2]
 
 
 @dataclass(frozen=True)
@@ -122,10 +119,10 @@ class Judge:
         chances = self.weights[rows] / self.weights[rows].sum()
         return np.sort(np.random.default_rng(1).choice(rows, _PLACES, replace=False, p=chances))
 
-    def kernels(self, fields: list[Array]) -> list[Kernels]:
+    def kernels(self, fields: list[Array], kernels: Sequence[str] = KERNELS[:5]) -> list[Kernels]:
         """Sums the displacements under several fields (n, 3) at once."""
         densities = np.concatenate(fields, axis=1)[self.patches.rows] * self.patches.shares[:, None, None]
-        sums = integrals(self.patches.points[self.chosen], self.patches.corners, densities)
+        sums = integrals(self.patches.points[self.chosen], self.patches.corners, densities, kernels)
         return [Kernels(self.x[self.chosen], self.weights[self.chosen], self.sticks[self.chosen], sums[:, :, 3 * k:3 * k + 3],
                         values[self.chosen, 1:]) for k, values in enumerate(fields)]
 

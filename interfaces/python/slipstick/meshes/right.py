@@ -82,9 +82,10 @@ def solved_answer(scene: str, words: Sequence[str], keys: Mapping[str, Any], cel
 def _bilinear(x1: Array, x2: Array, values: Array, points: Array) -> Array:
     """Interpolates values (k, n1, n2) at the centres of cells; they are zero beyond the grid. Returns (n, k)."""
     padded = np.pad(values, ((0, 0), (1, 1), (1, 1)))
-    place = np.stack([(points[:, 0] - x1[0]) / (x1[1] - x1[0]), (points[:, 1] - x2[0]) / (x2[1] - x2[0])]) + 1
-    size = np.array(padded.shape[1:])[:, None]
-    place = np.clip(place, 0, size - 1 - 1e-9)
-    (i, j), (s, t) = place.astype(int), place - np.floor(place)
-    return np.asarray(((1 - s) * (1 - t) * padded[:, i, j] + s * (1 - t) * padded[:, i + 1, j] + (1 - s) * t * padded[:, i, j + 1]
-                       + s * t * padded[:, i + 1, j + 1]).T)
+    sizes = padded.shape[1:]
+    flat = np.ascontiguousarray(padded.reshape(len(padded), -1).T)
+    place = [np.clip((points[:, d] - x[0]) / (x[1] - x[0]) + 1, 0, sizes[d] - 1 - 1e-9) for d, x in enumerate((x1, x2))]
+    i, j = (along.astype(np.int64) for along in place)
+    s, t = (place[0] - i)[:, None], (place[1] - j)[:, None]
+    cell, row = i * sizes[1] + j, sizes[1]
+    return np.asarray((1 - s) * ((1 - t) * flat[cell] + t * flat[cell + 1]) + s * ((1 - t) * flat[cell + row] + t * flat[cell + row + 1]))
