@@ -130,7 +130,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       ->add_option("--read-as", mesh.read_as,
                    "choices for the reader of a field on a mesh, each key=value: kind=nodes, units=mm,MPa, "
                    "body=upper, axis=z, pressure=CPRESS, ...")
-      ->expected(1);
+      ->allow_extra_args(false);
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
       "0: good; 1: bad; 2: cannot be judged. docs/guides/verify-your-solver.md explains each number.");

@@ -54,7 +54,9 @@ def patches_of(field: ContactField, right: Array) -> Patches:
     if weights is None:
         weights = np.bincount(rows.ravel(), at_corners.ravel(), minlength=len(field.points))
     carries = ((field.pressure != 0) | (right != 0))[rows].any(axis=1) & (_areas(corners) > 0)
-    return Patches(field.kind, field.points, corners[carries], rows[carries], shares[carries], weights)
+    # Without a mesh the shape functions behind nodal forces are unknown.
+    kind = "nodes" if field.kind == "forces" and not field.faces else field.kind
+    return Patches(kind, field.points, corners[carries], rows[carries], shares[carries], weights)
 
 
 def voronoi_areas(corners: Array) -> Array:
