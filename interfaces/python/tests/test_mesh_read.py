@@ -236,6 +236,23 @@ class MeshTest(ReadTest):
         self.assertEqual([faces.shape for faces in field.faces], [(36, 4)])
         self.assertIn("36 faces lie on others", " ".join(field.said))
 
+    def test_data_on_both_bodies(self):
+        lower, [(name, below)] = solids("hexahedron")
+        upper, [(_, above)] = solids("hexahedron", number=5, above=True)
+        points, above = np.concatenate([lower, upper]), above + len(lower)
+        pressure, traction = solution(points[:, :2])
+        own = (points[:, 2] == 0) * np.where(np.arange(len(points)) < len(lower), 1, -1)  # each body's own traction
+        data = {"p": pressure * (points[:, 2] == 0), "q": own[:, None] * traction}
+        surfaces = [("quad", np.concatenate([below[:, [4, 5, 6, 7]], above[:, [0, 3, 2, 1]]]))]  # seen from outside
+        for cells in ([(name, np.concatenate([below, above]))], surfaces):
+            path = self.file("m.vtu", vtu(points, cells, data, {}))
+            for body, number in (("lower", 36), ("upper", 25)):
+                field = read(path, body=body)
+                self.assert_exact(field)
+                self.assertEqual(sum(map(len, field.faces)), number)
+        unordered = [("quad", np.concatenate([below[:, [4, 5, 6, 7]], above[:, [0, 1, 2, 3]]]))]
+        self.assert_refused("the load counts twice", self.file("u.vtu", vtu(points, unordered, data, {})))
+
     def contact_of(self, points, above=False):
         """CalculiX's contact values at nodes of solids, (n, 3), of the slave: the body above or below the plane z = 0. CSHEAR
         acts on the master, along t1 = x and t2 = n x t1 with the master's outward normal n."""

@@ -29,7 +29,7 @@ from .files.tables import FORMS
 from .names import Arrays, Names, given_names
 from .plane import Axis, Frame, check_flat, frame_of
 from .radial import of_radial_table
-from .surface import KNOWN, contact_faces, face_areas, faces_of, nodal_areas, vertices_in_plane, without_repeated
+from .surface import KNOWN, contact_faces, face_areas, faces_of, nodal_areas, vertices_in_plane
 from .units import Units
 from .values import HOW_TO_NAME, Options, Values, loaded, values_of
 
@@ -145,16 +145,12 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
             in_contact[one.nodes[on_faces[one.rows]]] = True
     frame = frame_of(mesh.points[in_contact], options.axis, name)
     check_flat(mesh.points[in_contact], frame, name)
-    chosen, owner = contact_faces(faces, outer, mesh.points, in_contact, frame, options.body == "upper", name)
-    single = without_repeated(chosen, mesh.points, frame)
-    vertices, of_types, nodes = vertices_in_plane(single, mesh.points, frame)
+    chosen, owner, said = contact_faces(faces, outer, mesh.points, in_contact, frame, options.body == "upper", name)
+    vertices, of_types, nodes = vertices_in_plane(chosen, mesh.points, frame)
     vertices = vertices * units.size("length")
-    rows = np.concatenate([one.rows for one in single]) if at_faces else nodes
+    rows = np.concatenate([one.rows for one in chosen]) if at_faces else nodes
     values = values_of(arrays.rows(rows), frame, options, units, name, owner)
-    repeated = sum(len(one.nodes) for one in chosen) - sum(map(len, of_types))
-    if repeated:
-        values.said.append(f"Mesh: {repeated} faces lie on others and are left out.")
-    values.said += [frame.said(),
+    values.said += [frame.said(), *said,
                     f"Mesh: {sum(map(len, of_types))} faces{' of solids' if outer else ''} with {len(vertices)} nodes.",
                     *(f"Mesh: {len(cells)} cells of {cell} are not read." for cell, cells in mesh.cells if cell not in KNOWN)]
     if at_faces:

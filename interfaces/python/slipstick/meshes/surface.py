@@ -12,6 +12,8 @@ from .field import Array, Indices
 from .files.mesh import FACES, Blocks
 from .plane import Frame
 
+Mask = npt.NDArray[np.bool_]
+
 _BOTTOM, _TOP = [(0, 1), (1, 2), (2, 3), (3, 0)], [(4, 5), (5, 6), (6, 7), (7, 4)]
 _TETRA = ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
 _HEXAHEDRON = ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
@@ -41,7 +43,7 @@ class Faces:
     def corners(self) -> Indices:
         return self.nodes[:, :3 if self.nodes.shape[1] in (3, 6) else 4]
 
-    def chosen(self, which: npt.NDArray[np.bool_]) -> Faces:
+    def chosen(self, which: Mask) -> Faces:
         return Faces(self.nodes[which], None if self.rows is None else self.rows[which])
 
     def normals(self, points: Array) -> Array:
@@ -75,7 +77,7 @@ def _of_solids(cells: Blocks, points: Array) -> list[Faces]:
     return outer
 
 
-def _turned(faces: Indices, which: npt.NDArray[np.bool_]) -> Indices:
+def _turned(faces: Indices, which: Mask) -> Indices:
     """Faces (m, k), some of them with their nodes the other way round."""
     turned = faces.copy()
     turned[which] = faces[which][:, _TURNED[faces.shape[1]]]
@@ -99,28 +101,57 @@ def faces_of(cells: Blocks, points: Array, source: str) -> tuple[list[Faces], bo
     return outer, True
 
 
-def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Array, frame: Frame, upper: bool,
-                  source: str) -> tuple[list[Faces], Optional[str]]:
-    """The faces near the contact's plane, and the body whose faces they are, "lower" or "upper", if solids show it. From solids,
-    only faces with loaded nodes are taken; if both bodies have such faces, the lower body's or the upper one's. loaded (n): nodes
-    with a pressure."""
+def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Mask, frame: Frame, upper: bool,
+                  source: str) -> tuple[list[Faces], Optional[str], list[str]]:
+    """The faces near the contact's plane, the body whose faces they are, "lower" or "upper", if solids show it, and the choices
+    made. From solids, only faces with loaded nodes are taken. If both bodies have loaded faces, those of one are taken: of the
+    lower one, or the upper one. loaded (n): nodes with a pressure."""
     contact = points[loaded]
     middle, size = (contact @ frame.x3).mean(), np.ptp(frame.in_plane(contact), axis=0).max()
     towards = [face.normals(points) @ frame.x3 for face in faces]
     near = [abs((points[face.corners()] @ frame.x3).mean(axis=1) - middle) < 0.1 * size for face in faces]
     flat = [(abs(cosine) > 0.8) & close for cosine, close in zip(towards, near)]
-    owner = None
+    said, number = [], sum(map(np.sum, flat))
+    flat = _without_repeated(faces, flat, points, frame)
+    if sum(map(np.sum, flat)) < number:
+        said.append(f"Mesh: {number - sum(map(np.sum, flat))} faces lie on others and are left out.")
+    touching = [one & loaded[face.corners()].any(axis=1) for one, face in zip(flat, faces)]
+    if not any(map(np.any, touching)):
+        raise InputError(f"{source}: no face with a pressure lies in the contact's plane; allowed: faces that follow it, or its normal "
+                         "as --read-as axis=NX,NY,NZ")
+    signs = np.concatenate([np.sign(cosine[one]) for cosine, one in zip(towards, touching)])
+    both = bool((signs > 0).any() and (signs < 0).any())
+    if not outer and _layers([face.chosen(one) for face, one in zip(faces, touching)], points, frame) > 1.5:
+        if not both:
+            raise InputError(f"{source}: faces with a pressure lie on each other, so that the load counts twice; allowed: one "
+                             "body's surface")
+    elif not outer:
+        both = False  # the order of nodes tells nothing in one surface
     if outer:
-        flat = [one & loaded[face.corners()].any(axis=1) for one, face in zip(flat, faces)]
-        signs = np.concatenate([np.sign(cosine[one]) for cosine, one in zip(towards, flat)])
-        if (signs > 0).any() and (signs < 0).any():
-            flat = [one & (cosine * (-1 if upper else 1) > 0) for one, cosine in zip(flat, towards)]
-        else:
-            owner = "lower" if (signs > 0).any() else "upper"
-    if not any(map(np.any, flat)):
-        raise InputError(f"{source}: no face lies in the contact's plane; allowed: faces that follow it, or its normal as "
-                         "--read-as axis=NX,NY,NZ")
-    return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner
+        flat = touching
+    if both:
+        flat = [one & (cosine * (-1 if upper else 1) > 0) for one, cosine in zip(flat, towards)]
+        said.append(f"Mesh: both bodies' faces have a pressure; those of the {'upper' if upper else 'lower'} one are taken.")
+    owner = None if both or not outer else "lower" if (signs > 0).any() else "upper"
+    return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner, said
+
+
+def _without_repeated(faces: list[Faces], which: list[Mask], points: Array, frame: Frame) -> list[Mask]:
+    """Some of the faces, without those that lie exactly on another one, as a second body's or another piece's may."""
+    centres = frame.in_plane(np.concatenate([points[one.nodes].mean(axis=1) for one in faces]))
+    chosen = np.flatnonzero(np.concatenate(which))
+    _, first = np.unique(np.round(centres[chosen] / (1e-7 * np.ptp(centres, axis=0).max())), axis=0, return_index=True)
+    kept = np.zeros(len(centres), bool)
+    kept[chosen[first]] = True
+    return np.split(kept, np.cumsum([len(one) for one in which])[:-1])
+
+
+def _layers(faces: list[Faces], points: Array, frame: Frame) -> float:
+    """The area of faces over the area of the convex figure around them: about 1, and 2 where two surfaces lie on each other."""
+    from scipy.spatial import ConvexHull  # type: ignore[import-untyped]
+    vertices = frame.in_plane(points)
+    around = ConvexHull(vertices[np.unique(np.concatenate([one.nodes.ravel() for one in faces]))])
+    return float(sum(face_areas(one.nodes, vertices).sum() for one in faces) / around.volume)
 
 
 def _areas(corners: Array) -> Array:
@@ -151,12 +182,3 @@ def vertices_in_plane(chosen: list[Faces], points: Array, frame: Frame) -> tuple
     vertices = frame.in_plane(points[nodes])
     renumbered = [Faces(np.searchsorted(nodes, one.nodes)) for one in chosen]
     return vertices, [_turned(one.nodes, _areas(vertices[one.corners()]) < 0) for one in renumbered], nodes
-
-
-def without_repeated(faces: list[Faces], points: Array, frame: Frame) -> list[Faces]:
-    """The faces that do not lie exactly on another one, as a second body's or another piece's may."""
-    centres = frame.in_plane(np.concatenate([points[one.nodes].mean(axis=1) for one in faces]))
-    _, first = np.unique(np.round(centres / (1e-7 * np.ptp(centres, axis=0).max(initial=1e-300))), axis=0, return_index=True)
-    kept = np.isin(np.arange(len(centres)), first)
-    parts = np.split(kept, np.cumsum([len(one.nodes) for one in faces])[:-1])
-    return [one.chosen(part) for one, part in zip(faces, parts) if part.any()]
