@@ -1,6 +1,7 @@
 """The contact's surface in a mesh: its faces and their areas."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Optional
 
@@ -103,55 +104,55 @@ def faces_of(cells: Blocks, points: Array, source: str) -> tuple[list[Faces], bo
 
 def contact_faces(faces: list[Faces], outer: bool, points: Array, loaded: Mask, frame: Frame, upper: bool,
                   source: str) -> tuple[list[Faces], Optional[str], list[str]]:
-    """The faces near the contact's plane, the body whose faces they are, "lower" or "upper", if solids show it, and the choices
-    made. From solids, only faces with loaded nodes are taken. If both bodies have loaded faces, those of one are taken: of the
-    lower one, or the upper one. loaded (n): nodes with a pressure."""
-    contact = points[loaded]
-    middle, size = (contact @ frame.x3).mean(), np.ptp(frame.in_plane(contact), axis=0).max()
-    towards = [face.normals(points) @ frame.x3 for face in faces]
-    near = [abs((points[face.corners()] @ frame.x3).mean(axis=1) - middle) < 0.1 * size for face in faces]
-    flat = [(abs(cosine) > 0.8) & close for cosine, close in zip(towards, near)]
-    said, number = [], sum(map(np.sum, flat))
-    flat = _without_repeated(faces, flat, points, frame)
-    if sum(map(np.sum, flat)) < number:
-        said.append(f"Mesh: {number - sum(map(np.sum, flat))} faces lie on others and are left out.")
-    touching = [one & loaded[face.corners()].any(axis=1) for one, face in zip(flat, faces)]
-    if not any(map(np.any, touching)):
-        raise InputError(f"{source}: no face with a pressure lies in the contact's plane; allowed: faces that follow it, or its normal "
-                         "as --read-as axis=NX,NY,NZ")
-    signs = np.concatenate([np.sign(cosine[one]) for cosine, one in zip(towards, touching)])
-    both = bool((signs > 0).any() and (signs < 0).any())
-    if not outer and _layers([face.chosen(one) for face, one in zip(faces, touching)], points, frame) > 1.5:
-        if not both:
+    """The faces of the contact; the body whose faces they are, "lower" or "upper", if solids show it; and the choices made.
+
+    Faces near the contact's plane are taken; of solids, only those with loaded nodes. If both bodies have loaded faces, those of
+    the lower or the upper one are taken. loaded (n): nodes with a pressure."""
+
+    def of_all(function: Callable[[Faces], Array]) -> Array:
+        return np.concatenate([function(face) for face in faces])
+
+    def split(which: Mask) -> list[Mask]:
+        return np.split(which, np.cumsum([len(face.nodes) for face in faces])[:-1])
+
+    vertices = frame.in_plane(points)
+    middle, size = (points[loaded] @ frame.x3).mean(), np.ptp(vertices[loaded], axis=0).max()
+    towards = of_all(lambda face: face.normals(points) @ frame.x3)
+    height = of_all(lambda face: (points[face.corners()] @ frame.x3).mean(axis=1))
+    flat = (abs(towards) > 0.8) & (abs(height - middle) < 0.1 * size)
+    single = flat & _is_first(of_all(lambda face: vertices[face.nodes].mean(axis=1)), flat)
+    touching = single & of_all(lambda face: loaded[face.corners()].any(axis=1))
+    if not touching.any():
+        raise InputError(f"{source}: no face with a pressure lies in the contact's plane; allowed: faces that follow it, or its "
+                         "normal as --read-as axis=NX,NY,NZ")
+    said = [f"Mesh: {flat.sum() - single.sum()} faces lie on others and are left out."] if single.sum() < flat.sum() else []
+    both = bool((towards[touching] > 0).any() and (towards[touching] < 0).any())
+    if not outer:  # the order of nodes shows the body only where two surfaces lie on each other
+        layered = _layers([face.chosen(part) for face, part in zip(faces, split(touching))], vertices) > 1.5
+        if layered and not both:
             raise InputError(f"{source}: faces with a pressure lie on each other, so that the load counts twice; allowed: one "
                              "body's surface")
-    elif not outer:
-        both = False  # the order of nodes tells nothing in one surface
-    if outer:
-        flat = touching
+        both = both and layered
+    chosen = touching if outer else single
     if both:
-        flat = [one & (cosine * (-1 if upper else 1) > 0) for one, cosine in zip(flat, towards)]
+        chosen = chosen & (towards * (-1 if upper else 1) > 0)
         said.append(f"Mesh: both bodies' faces have a pressure; those of the {'upper' if upper else 'lower'} one are taken.")
-    owner = None if both or not outer else "lower" if (signs > 0).any() else "upper"
-    return [face.chosen(one) for face, one in zip(faces, flat) if one.any()], owner, said
+    owner = None if both or not outer else "lower" if (towards[touching] > 0).any() else "upper"
+    return [face.chosen(part) for face, part in zip(faces, split(chosen)) if part.any()], owner, said
 
 
-def _without_repeated(faces: list[Faces], which: list[Mask], points: Array, frame: Frame) -> list[Mask]:
-    """Some of the faces, without those that lie exactly on another one, as a second body's or another piece's may."""
-    centres = frame.in_plane(np.concatenate([points[one.nodes].mean(axis=1) for one in faces]))
-    chosen = np.flatnonzero(np.concatenate(which))
+def _is_first(centres: Array, which: Mask) -> Mask:
+    """Some of the faces, without those whose centre (m, 2) is another one's, as a second body's or another piece's may be."""
+    chosen = np.flatnonzero(which)
     _, first = np.unique(np.round(centres[chosen] / (1e-7 * np.ptp(centres, axis=0).max())), axis=0, return_index=True)
-    kept = np.zeros(len(centres), bool)
-    kept[chosen[first]] = True
-    return np.split(kept, np.cumsum([len(one) for one in which])[:-1])
+    return np.isin(np.arange(len(centres)), chosen[first])
 
 
-def _layers(faces: list[Faces], points: Array, frame: Frame) -> float:
+def _layers(faces: list[Faces], vertices: Array) -> float:
     """The area of faces over the area of the convex figure around them: about 1, and 2 where two surfaces lie on each other."""
     from scipy.spatial import ConvexHull  # type: ignore[import-untyped]
-    vertices = frame.in_plane(points)
-    around = ConvexHull(vertices[np.unique(np.concatenate([one.nodes.ravel() for one in faces]))])
-    return float(sum(face_areas(one.nodes, vertices).sum() for one in faces) / around.volume)
+    around = ConvexHull(vertices[np.unique(np.concatenate([face.nodes.ravel() for face in faces]))])
+    return float(sum(face_areas(face.nodes, vertices).sum() for face in faces) / around.volume)
 
 
 def _areas(corners: Array) -> Array:
