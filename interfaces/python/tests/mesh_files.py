@@ -68,7 +68,8 @@ if importlib.util.find_spec("lz4"):
     COMPRESSORS["vtkLZ4DataCompressor"] = functools.partial(lz4.block.compress, store_size=False)
 
 VTK_TYPES = {"triangle": 5, "quad": 9, "triangle6": 22, "quad8": 23, "quad9": 28, "tetra": 10, "tetra10": 24, "hexahedron": 12,
-             "hexahedron20": 25, "wedge": 13, "wedge15": 26, "pyramid": 14, "polygon": 7}
+             "hexahedron20": 25, "hexahedron27": 29, "wedge": 13, "wedge15": 26, "pyramid": 14, "polygon": 7}
+FRD_TYPES = {"hexahedron": 1, "wedge": 2, "tetra": 3, "hexahedron20": 4, "wedge15": 5, "tetra10": 6}
 _EDGES = {4: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
           6: [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
           8: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
@@ -84,26 +85,27 @@ def solids(name, number=6, above=False):
     corners = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)])
     split = {"hexahedron": [range(8)], "wedge": [(0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7)],
              "tetra": [(0, 1, 2, 6), (0, 5, 1, 6), (0, 4, 5, 6), (0, 7, 4, 6), (0, 3, 7, 6), (0, 2, 3, 6)],
-             "pyramid": [(0, 1, 2, 3, 4), (1, 5, 6, 2, 4), (2, 6, 7, 3, 4)]}[name.rstrip("0125")]
+             "pyramid": [(0, 1, 2, 3, 4), (1, 5, 6, 2, 4), (2, 6, 7, 3, 4)]}[name.rstrip("01257")]
     cells = []
     for part in split:
         offsets = [corners[c] for c in part]
         if name[-1].isdigit():
             offsets += [(offsets[a] + offsets[b]) // 2 for a, b in _EDGES[len(part)]]
+        if name == "hexahedron27":  # the faces' centres and the solid's
+            offsets += [np.array(at) for at in ((0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2), (1, 1, 1))]
         cells.append(np.stack([place[i + a, j + b, c] for a, b, c in offsets], axis=1))
     return points, [(name, np.concatenate(cells))]
 
 
 def frd(points, cells, contact):
     """The text of a .frd file with two steps: no contact in the first, `contact` (arrays by component) in the second."""
-    types = {"hexahedron": 1, "wedge": 2, "tetra": 3, "hexahedron20": 4, "wedge15": 5, "tetra10": 6}
     order = {"hexahedron20": [*range(12), *range(16, 20), *range(12, 16)], "wedge15": [*range(9), *range(12, 15), *range(9, 12)]}
     lines = ["    1C", f"    2C{len(points):30d}{1:38d}"]
     lines += [f" -1{i + 5:10d}" + "".join(f"{x:12.5E}" for x in point) for i, point in enumerate(points)]
     lines += [" -3", f"    3C{sum(len(nodes) for _, nodes in cells):30d}{1:38d}"]
     for name, rows in cells:
         for number, row in enumerate(rows, 1):
-            lines.append(f" -1{number:10d}{types[name]:5d}{0:5d}{1:5d}")
+            lines.append(f" -1{number:10d}{FRD_TYPES[name]:5d}{0:5d}{1:5d}")
             written = row[order.get(name, slice(None))] + 5
             lines += [" -2" + "".join(f"{node:10d}" for node in written[k:k + 10]) for k in range(0, len(written), 10)]
     lines.append(" -3")

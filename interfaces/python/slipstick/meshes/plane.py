@@ -23,7 +23,7 @@ class Frame:
 
     def in_plane(self, vectors: Array) -> Array:
         """(n, 2): the components along x1 and x2."""
-        return np.stack([vectors @ self.x1, vectors @ self.x2], axis=1)
+        return np.asarray(np.stack([vectors @ self.x1, vectors @ self.x2], axis=1))
 
     def tangents(self, of_upper: bool) -> Array:
         """(2, 2): the components along x1 and x2 of t1, the x axis projected on the surface, and of t2 = n x t1; n is the outward

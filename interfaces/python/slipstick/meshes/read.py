@@ -158,8 +158,8 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
         areas = np.concatenate([face_areas(one, vertices) for one in of_types])
         return _field("faces", points, values, area=areas, vertices=vertices, faces=of_types, name=name)
     kind = "forces" if values.are_forces else options.kind or "nodes"
-    areas = nodal_areas(of_types, vertices) if kind == "forces" else None
-    field = _field(kind, vertices, values, area=areas, vertices=vertices, faces=of_types, name=name)
+    area = nodal_areas(of_types, vertices) if kind == "forces" else None
+    field = _field(kind, vertices, values, area=area, vertices=vertices, faces=of_types, name=name)
     return _over_areas(field) if values.are_forces else field
 
 

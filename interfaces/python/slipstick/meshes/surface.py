@@ -15,23 +15,26 @@ from .plane import Frame
 
 Mask = npt.NDArray[np.bool_]
 
+# Shapes of solids: corners of the faces, and the edges in the order of their middle nodes.
+_Shape = tuple[list[tuple[int, ...]], list[tuple[int, int]]]
 _BOTTOM, _TOP = [(0, 1), (1, 2), (2, 3), (3, 0)], [(4, 5), (5, 6), (6, 7), (7, 4)]
-_TETRA = ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
-_HEXAHEDRON = ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
-               [*_BOTTOM, *_TOP, (0, 4), (1, 5), (2, 6), (3, 7)])
-_WEDGE = ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
-          [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)])
-_PYRAMID = ([(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)], [*_BOTTOM, (0, 4), (1, 4), (2, 4), (3, 4)])
-_HEXAHEDRON_MIDDLES = [24, 25, 22, 21, 23, 20]  # the centres of the faces above in hexahedron27
-# Corners of the faces, seen counter-clockwise from outside, and the edges in the order of their middle nodes.
-_SOLIDS = {"tetra": (_TETRA, 4), "tetra10": (_TETRA, 4), "hexahedron": (_HEXAHEDRON, 8), "hexahedron20": (_HEXAHEDRON, 8),
-           "hexahedron27": (_HEXAHEDRON, 8), "wedge": (_WEDGE, 6), "wedge15": (_WEDGE, 6), "pyramid": (_PYRAMID, 5),
-           "pyramid13": (_PYRAMID, 5)}
+_TETRA: _Shape = ([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
+_HEXAHEDRON: _Shape = ([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
+                       [*_BOTTOM, *_TOP, (0, 4), (1, 5), (2, 6), (3, 7)])
+_WEDGE: _Shape = ([(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+                  [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)])
+_PYRAMID: _Shape = ([(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)], [*_BOTTOM, (0, 4), (1, 4), (2, 4), (3, 4)])
+_HEXAHEDRON_MIDDLES = [24, 25, 22, 21, 23, 20]  # of hexahedron27: the centres of the faces above
+_SOLIDS: dict[str, tuple[_Shape, int]] = {
+    "tetra": (_TETRA, 4), "tetra10": (_TETRA, 4), "hexahedron": (_HEXAHEDRON, 8), "hexahedron20": (_HEXAHEDRON, 8),
+    "hexahedron27": (_HEXAHEDRON, 8), "wedge": (_WEDGE, 6), "wedge15": (_WEDGE, 6), "pyramid": (_PYRAMID, 5),
+    "pyramid13": (_PYRAMID, 5)}
 KNOWN = {*FACES, *_SOLIDS, "vertex", "line", "line3"}
 _TURNED = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3], 4: [0, 3, 2, 1], 8: [0, 3, 2, 1, 7, 6, 5, 4], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}
-_PARTS = {3: [(0, 1, 2)], 6: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)], 4: [(0, 1, 2, 3)],
-          8: [(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6, 7)],
-          9: [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]}
+_PARTS: dict[int, list[tuple[int, ...]]] = {  # linear parts of faces
+    3: [(0, 1, 2)], 6: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)], 4: [(0, 1, 2, 3)],
+    8: [(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6, 7)],
+    9: [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]}
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,8 @@ def _turned(faces: Indices, which: Mask) -> Indices:
 
 def faces_of(cells: Blocks, points: Array, source: str) -> tuple[list[Faces], bool]:
     """The faces of a mesh, and whether they are the outer faces of its solids, because it has no faces of its own."""
-    own, total = {}, 0
+    own: dict[int, list[tuple[Indices, Indices]]] = {}
+    total = 0
     for name, nodes in cells:
         if name in FACES:
             own.setdefault(FACES[name], []).append((nodes, total + np.arange(len(nodes))))
@@ -163,7 +167,8 @@ def _areas(corners: Array) -> Array:
 
 def face_areas(faces: Indices, vertices: Array) -> Array:
     """(m): areas of faces; quadratic ones as the polygons through their middle nodes."""
-    return np.asarray(sum(abs(_areas(vertices[faces[:, list(part)]])) for part in _PARTS[faces.shape[1]]))
+    parts = [abs(_areas(vertices[faces[:, list(part)]])) for part in _PARTS[faces.shape[1]]]
+    return np.asarray(np.sum(parts, axis=0))
 
 
 def nodal_areas(faces: list[Indices], vertices: Array) -> Array:

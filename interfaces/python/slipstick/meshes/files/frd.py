@@ -88,7 +88,7 @@ def read_frd(path: Path) -> Mesh:
         rows = [numbers for number, numbers in elements if number == kind]
         if rows:
             cells.append((name, place(np.array(rows, np.int64)[:, _ORDER.get(kind, slice(size))])))
-    at = place(contact.pop("nodes"))
+    at = place(contact.pop("nodes").astype(np.int64))
     data = {}
     for name, values in contact.items():
         data[name] = np.full(len(nodes), np.nan)

@@ -44,7 +44,7 @@ def in_space(points: Any) -> Array:
 
 def split_contact(data: Mapping[str, Any]) -> dict[str, Array]:
     """Arrays by name, the six columns of CalculiX's CONTACT as arrays of their own."""
-    split = {}
+    split: dict[str, Array] = {}
     for name, values in data.items():
         array = np.asarray(values)
         if array.ndim == 2 and name.lower() == "contact" and array.shape[1] == 6:

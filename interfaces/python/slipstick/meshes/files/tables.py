@@ -3,9 +3,10 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
+import numpy.typing as npt
 
 from ...errors import InputError
 from .mesh import Mesh
@@ -39,7 +40,7 @@ def _is_number(word: str) -> bool:
     return True
 
 
-def _column(words: list[str]) -> np.ndarray:
+def _column(words: list[str]) -> npt.NDArray[Any]:
     """Numbers, an empty field as NaN; words where one is no number."""
     try:
         return np.array([word or "nan" for word in words], float)

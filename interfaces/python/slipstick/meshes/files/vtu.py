@@ -6,11 +6,12 @@ import re
 import xml.etree.ElementTree as xml
 import zlib
 from pathlib import Path
-from typing import Optional
+from typing import Literal, Optional
 
 import numpy as np
 
 from ...errors import InputError
+from ..field import Array
 from .mesh import Mesh, of_vtk
 
 _SECTIONS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6}  # of .vtp, in the order of the cell data
@@ -47,7 +48,7 @@ class _File:
         except xml.ParseError as error:
             raise InputError(f"{path.name}: it is no whole XML file: {error}") from None
         self._starts = sorted(int(a.get("offset", 0)) for a in self.root.iter("DataArray") if a.get("format") == "appended")
-        self._order = ">" if self.root.get("byte_order") == "BigEndian" else "<"
+        self._order: Literal["<", ">"] = ">" if self.root.get("byte_order") == "BigEndian" else "<"
         self._header = self._order + ("u8" if self.root.get("header_type") == "UInt64" else "u4")
         self._compressor = self.root.get("compressor")
 
@@ -64,7 +65,7 @@ class _File:
         return b"".join(_decompressed(data[int(end - length):int(end)], whole, self._compressor)
                         for end, length, whole in zip(ends, lengths, sizes))
 
-    def numbers(self, array: xml.Element) -> np.ndarray:
+    def numbers(self, array: xml.Element) -> Array:
         """The numbers of a DataArray: one row a point or cell, if it has several components."""
         kind = array.get("type", "Float64")
         dtype = np.dtype({"I": "i", "U": "u", "F": "f"}[kind[0]] + str(int(re.sub(r"\D", "", kind)) // 8))
@@ -81,14 +82,14 @@ class _File:
         columns = int(array.get("NumberOfComponents") or 1)
         return values.reshape(-1, columns) if columns > 1 else values
 
-    def arrays(self, section: Optional[xml.Element]) -> dict[str, np.ndarray]:
+    def arrays(self, section: Optional[xml.Element]) -> dict[str, Array]:
         """The arrays of a section by name; components that have names of their own are arrays of their own."""
-        found = {}
+        found: dict[str, Array] = {}
         for array in section if section is not None else ():
             if array.tag != "DataArray" or array.get("type") == "String":
                 continue
             values = self.numbers(array)
-            labels = [array.get(f"ComponentName{i}") for i in range(values.shape[1] if values.ndim > 1 else 0)]
+            labels = [array.get(f"ComponentName{i}", "") for i in range(values.shape[1] if values.ndim > 1 else 0)]
             if len(labels) > 3 and all(labels):
                 found.update(zip(labels, values.T))
             else:
