@@ -59,6 +59,12 @@ def patches_of(field: ContactField, right: Array) -> Patches:
     return Patches(kind, field.points, corners[carries], rows[carries], shares[carries], weights)
 
 
+def areas_around(points: Array) -> Array:
+    """The area (n) that is closest to each point (n, 2), within their hull."""
+    rows = _triangulated(points)
+    return np.bincount(rows.ravel(), voronoi_areas(points[rows]).ravel(), minlength=len(points))
+
+
 def voronoi_areas(corners: Array) -> Array:
     """The area (t, 3) of each triangle (t, 3, 2) that is closest to each of its corners; of an obtuse one half at that corner and a
     quarter at the others (Meyer, Desbrun, Schroeder and Barr 2003). Unlike thirds it does not depend on how Delaunay's triangulation

@@ -27,6 +27,7 @@ from .files import load
 from .files.mesh import FACES, Mesh, in_space
 from .files.tables import FORMS
 from .names import Arrays, Names, given_names
+from .patches import areas_around
 from .plane import Axis, Frame, check_flat, frame_of
 from .radial import of_radial_table
 from .surface import KNOWN, contact_faces, face_areas, faces_of, nodal_areas, vertices_in_plane
@@ -74,9 +75,8 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
                             "points": "Kind: rows are values at points with a weight, as an area is given."}[kind])
     field = _without_duplicates(_field(kind, points, values, area=area, name=name))
     if values.are_forces and field.area is None:
-        from scipy.spatial import Delaunay  # type: ignore[import-untyped]
-        field.area = nodal_areas([np.asarray(Delaunay(field.points).simplices, np.int64)], field.points)
-        field.said.append("Area: the forces are divided by a third of the triangles around each point (Delaunay).")
+        field.area = areas_around(field.points)
+        field.said.append("Area: the forces are divided by the area that is closest to each point (Voronoi).")
     return _over_areas(field) if values.are_forces else field
 
 
@@ -158,6 +158,9 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
         areas = np.concatenate([face_areas(one, vertices) for one in of_types])
         return _field("faces", points, values, area=areas, vertices=vertices, faces=of_types, name=name)
     kind = "forces" if values.are_forces else options.kind or "nodes"
+    if kind == "forces" and any(faces.shape[1] > 4 for faces in of_types):
+        raise InputError(f"{name}: nodal forces on quadratic faces, whose corners carry nothing or less under a uniform pressure; allowed: "
+                         "values at nodes or faces, or forces on linear faces")
     area = nodal_areas(of_types, vertices) if kind == "forces" else None
     field = _field(kind, vertices, values, area=area, vertices=vertices, faces=of_types, name=name)
     return _over_areas(field) if values.are_forces else field
