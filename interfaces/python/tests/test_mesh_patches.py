@@ -2,10 +2,10 @@
 import unittest
 
 import numpy as np
-from scipy.spatial import Delaunay
+from scipy.spatial import ConvexHull
 
 from slipstick.meshes.field import ContactField
-from slipstick.meshes.patches import patches_of, put_on, voronoi_areas
+from slipstick.meshes.patches import areas_around, patches_of, put_on
 
 
 def square(n):
@@ -23,13 +23,16 @@ def patches(kind, nodes, faces):
 
 
 class Patches(unittest.TestCase):
-    def test_voronoi_areas_fill_the_hull_whatever_the_diagonals(self):
+    def test_areas_of_points_are_those_of_the_faces_between_them(self):
         nodes, _ = square(8)
-        triangles = Delaunay(nodes).simplices
-        areas = np.bincount(triangles.ravel(), voronoi_areas(nodes[triangles]).ravel())
+        areas = areas_around(nodes)
         inside = np.abs(nodes).max(axis=1) < 1
         np.testing.assert_allclose(areas[inside], (2 / 8)**2, rtol=1e-12)
         self.assertAlmostEqual(areas.sum(), 4.0, 12)
+        scattered = np.random.default_rng(1).uniform(-1, 1, (60, 2))
+        hull = ConvexHull(scattered).volume
+        self.assertLess(areas_around(scattered).sum(), hull * (1 + 1e-12))
+        self.assertGreater(areas_around(scattered).sum(), 0.95 * hull)  # without slivers along the hull
 
     def test_linear_fields_are_kept_by_every_way(self):
         nodes, quads = square(5)

@@ -13,8 +13,10 @@ from .displacement import triangles_of
 from .field import Array, ContactField, Indices
 
 #: A triangle of a triangulation crosses a gap between parts of the contact where its longest edge is longer than this many times the
-#: shortest ones at its corners.
+#: shorter ones at its corners.
 _GAP = 5.0
+#: Four points are on a circle if the cotangents of two opposite angles add up to less than this.
+_ON_CIRCLE = 1e-4
 #: Each triangle is divided into the square of this number of equal ones, at whose centres integrals take their values.
 _PARTS = 4
 
@@ -49,7 +51,7 @@ def patches_of(field: ContactField, right: Array) -> Patches:
     else:
         rows = _triangulated(field.points)
         corners, shares = field.points[rows], np.ones(len(rows))
-        at_corners = voronoi_areas(corners)
+        at_corners = _corner_areas(corners, rows)
     weights = field.area
     if weights is None:
         weights = np.bincount(rows.ravel(), at_corners.ravel(), minlength=len(field.points))
@@ -60,25 +62,33 @@ def patches_of(field: ContactField, right: Array) -> Patches:
 
 
 def areas_around(points: Array) -> Array:
-    """The area (n) that is closest to each point (n, 2), within their hull."""
+    """The area (n) of each point (n, 2): the third of each triangle around it. Two triangles whose four corners lie on a circle are
+    the halves of a quadrilateral, of which each corner has a fourth: how Delaunay's triangulation divides it is by chance."""
     rows = _triangulated(points)
-    return np.bincount(rows.ravel(), voronoi_areas(points[rows]).ravel(), minlength=len(points))
+    return np.bincount(rows.ravel(), _corner_areas(points[rows], rows).ravel(), minlength=len(points))
 
 
-def voronoi_areas(corners: Array) -> Array:
-    """The area (t, 3) of each triangle (t, 3, 2) that is closest to each of its corners; of an obtuse one half at that corner and a
-    quarter at the others (Meyer, Desbrun, Schroeder and Barr 2003). Unlike thirds it does not depend on how Delaunay's triangulation
-    divides four points on a circle."""
+def _corner_areas(corners: Array, rows: Indices) -> Array:
+    """The area (t, 3) at each corner of triangles (t, 3, 2)."""
+    edges = np.sort(np.stack([np.roll(rows, -1, axis=1), np.roll(rows, -2, axis=1)], axis=2), axis=2).reshape(-1, 2)
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)  # of each corner the edge that faces it
+    areas = _areas(corners)
     before, after = np.roll(opposite, 1, axis=1), np.roll(opposite, -1, axis=1)
-    double = 2 * _areas(corners)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        cotangent = -np.sum(before * after, axis=2) / double
-        parts = np.sum(opposite**2, axis=2) * cotangent
-        shared = (np.roll(parts, 1, axis=1) + np.roll(parts, -1, axis=1)) / 8
-    obtuse = cotangent < 0
-    by_angle = double / 2 * np.where(obtuse, 0.5, 0.25)
-    return np.where(obtuse.any(axis=1)[:, None], by_angle, np.nan_to_num(shared))
+        cotangent = (-np.sum(before * after, axis=2) / (2 * areas[:, None])).ravel()
+    order = np.lexsort(edges.T)
+    first, second = order[:-1], order[1:]
+    circular = (edges[first] == edges[second]).all(axis=1) & (np.abs(cotangent[first] + cotangent[second]) < _ON_CIRCLE)
+    parts = np.repeat(areas[:, None] / 3, 3, axis=1)
+    paired = np.zeros(len(rows), dtype=bool)
+    for one, other in zip(first[circular], second[circular]):
+        (t, corner), (u, facing) = divmod(one, 3), divmod(other, 3)
+        if not (paired[t] or paired[u]):
+            paired[[t, u]] = True
+            whole = areas[t] + areas[u]
+            parts[t], parts[u] = whole / 8, whole / 8
+            parts[t, corner], parts[u, facing] = whole / 4, whole / 4
+    return parts
 
 
 def _areas(corners: Array) -> Array:
@@ -91,11 +101,12 @@ def _triangulated(points: Array) -> Indices:
     simplices = Delaunay(points - points.mean(axis=0)).simplices
     corners = points[simplices]
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    nearest = np.full(len(points), np.inf)
-    np.minimum.at(nearest, simplices, np.minimum(edges, np.roll(edges, -1, axis=1)))
-    local = nearest[simplices].max(axis=1)
+    # Of each point the length below which two fifths of its edges are.
+    vertex, length = np.concatenate([simplices.ravel(), np.roll(simplices, 1, axis=1).ravel()]), np.tile(edges.ravel(), 2)
+    order, count = np.lexsort((length, vertex)), np.bincount(vertex, minlength=len(points))
+    local = length[order][np.minimum(np.cumsum(count) - count + (2 * count) // 5, len(order) - 1)][simplices].max(axis=1)
     flat = 2 * _areas(corners) < 1e-3 * edges.max(axis=1)**2
-    return np.asarray(simplices[(edges.max(axis=1) < _GAP * np.maximum(local, np.median(nearest))) & ~flat], dtype=np.int64)
+    return np.asarray(simplices[(edges.max(axis=1) < _GAP * local) & ~flat], dtype=np.int64)
 
 
 # ---------------------------------------------------------------- right answers on the mesh

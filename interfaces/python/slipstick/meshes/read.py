@@ -76,7 +76,7 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
     field = _without_duplicates(_field(kind, points, values, area=area, name=name))
     if values.are_forces and field.area is None:
         field.area = areas_around(field.points)
-        field.said.append("Area: the forces are divided by the area that is closest to each point (Voronoi).")
+        field.said.append("Area: the forces are divided by a third of the triangles around each point (Delaunay), or a fourth of rectangles.")
     return _over_areas(field) if values.are_forces else field
 
 
