@@ -105,6 +105,7 @@ class TableTest(ReadTest):
         scaled = {name: column * (1e3 if name[0] == "x" else 1) for name, column in forces.items()}
         self.assert_exact(read(scaled, units="mm,N"))
         self.assert_exact(read(scaled, units="mm,MPa"))
+        self.assert_exact(in_units_of(read(scaled, units="N"), RADIUS, LOAD))
 
     def test_radial_tables(self):
         radii = np.linspace(0, 1.2 * RADIUS, 25)

@@ -82,7 +82,7 @@ class Units:
 
     def said(self) -> list[str]:
         """The units that are taken, and the ones that are not known."""
-        force = "force" in self._given or self._found.get("force")
+        of_force = self._general("force") and self._general("length")  # a stress follows
         sentences = []
         for quantity in ("length", "stress"):
             unit, source = self._given.get(quantity), "as given"
@@ -90,7 +90,7 @@ class Units:
                 unit, source = self._found.get(quantity), "from the header"
             if unit:
                 sentences.append(f"Units: {quantity} in {unit}, {source}.")
-            elif not (quantity == "stress" and force):
+            elif not (quantity == "stress" and of_force):
                 sentences.append(_UNKNOWN[quantity])
         return sentences
 
