@@ -4,7 +4,6 @@
 
 #include <locale.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -270,42 +269,6 @@ static void test_ends(void) {
   solved(SLIPSTICK_BAD_INPUT, 2.0, 0, NULL);
 }
 
-enum { kThreads = 4 };
-static const char* const kLoads[kThreads] = {"load.moment_ratio=0.2", "load.moment_ratio=0.5",
-                                             "load.moment_ratio=0.9", "load.moment_ratio=2"};
-
-/* Twists of three loads; the fourth is refused, and its words are its thread's alone. */
-static void* solve_one(void* place) {
-  const size_t index = (size_t)((double*)place)[0];
-  double* const twist = (double*)place + 1;
-  slipstick_solution* solution = NULL;
-  const int status = slipstick_solve(kScene, NULL, 1, &kLoads[index], 0, NULL, NULL, &solution);
-  *twist = NAN;
-  if (status == SLIPSTICK_OK) slipstick_solution_number(solution, "twist_angle", twist);
-  if (status == SLIPSTICK_BAD_INPUT) *twist = says("moment_ratio") ? -1 : -2;
-  if (status == SLIPSTICK_OK && strlen(slipstick_message()) > 0) *twist = -3;
-  slipstick_solution_free(solution);
-  return NULL;
-}
-
-static void test_threads(void) {
-  double alone[kThreads][2], together[kThreads][2];
-  pthread_t threads[kThreads];
-  for (size_t i = 0; i < kThreads; ++i) {
-    alone[i][0] = together[i][0] = (double)i;
-    pthread_create(&threads[i], NULL, solve_one, alone[i]);
-    pthread_join(threads[i], NULL);
-  }
-  for (size_t i = 0; i < kThreads; ++i) pthread_create(&threads[i], NULL, solve_one, together[i]);
-  for (size_t i = 0; i < kThreads; ++i) {
-    pthread_join(threads[i], NULL);
-    check(together[i][1] == alone[i][1], "solves side by side give the same bits");
-  }
-  check(alone[0][1] > 0 && alone[1][1] > alone[0][1] && alone[2][1] > alone[1][1],
-        "twists rise with the moment");
-  check(alone[3][1] == -1, "a message belongs to its thread");
-}
-
 /* A program that writes 1,5 reads the same profiles, where this machine has a language that does. */
 static void test_locale(void) {
   static const char* const kCommas[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "it_IT.UTF-8",
@@ -337,7 +300,6 @@ int main(void) {
   test_refusals_of_a_solution();
   test_unequal_cells();
   test_ends();
-  test_threads();
   test_locale();
   if (failures == 0) puts("all holds");
   return failures == 0 ? 0 : 1;

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "docs/extend/examples/method.hpp"
-#include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {
@@ -212,23 +211,6 @@ TEST(Twist, IsOfSecondOrder) {
       EXPECT_LE(twist_error, 0.1 * rough.change) << tolerance;
     }
   }
-}
-
-// --- work ---
-
-class Work : public testing::TestWithParam<std::tuple<Index, double>> {};
-INSTANTIATE_TEST_SUITE_P(Meshes, Work,
-                         testing::Combine(testing::Values<Index>(64, 128, 256, 512),
-                                          testing::Values(0.5, 0.9, 0.99)));
-
-/// Applications on all grids in units of the finest grid's: a count, the same on every machine.
-TEST_P(Work, IsBoundedAtEveryMesh) {
-  const auto [cells, moment_ratio] = GetParam();
-  const ModelSolution solution = solve_in_model_units(paper_scene(cells, moment_ratio));
-  EXPECT_EQ(solution.status, Status::converged) << solution.message;
-  EXPECT_LE(solution.certificate.gap, 1e-8);
-  EXPECT_LE(solution.operator_applications, 25.0);
-  EXPECT_LE(solution.pressure_applications, 30.0);
 }
 
 }  // namespace

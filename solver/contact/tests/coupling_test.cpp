@@ -206,29 +206,6 @@ TEST(FullCoupling, UnderAStrengthSaysThatCellsComeAndGo) {
   EXPECT_THAT(solution.message, testing::HasSubstr("cells at the edge come into contact and leave it again"));
 }
 
-/// Friction that holds everything, or a push close to sliding, where shear follows pressure and pressure
-/// shear: an answer, or a status that says why there is none.
-TEST(FullCoupling, EndsWhateverTheFriction) {
-  for (const double friction : {0.3, 1.0, 3.0, 30.0}) {
-    for (const double push : {0.0, 0.9, 0.99}) {
-      Scene scene = dissimilar(Coupling::full, 0.0, 16);
-      scene.lower.poisson_ratio = 0.0;
-      scene.contact.friction.coefficient = friction;
-      scene.ends_at_grid_edge = true;  // much friction drags the contact there
-      scene.solver.tolerance = 1e-8;
-      scene.steps[0].torsion = Twist{0.0};
-      scene.steps[0].force = {push * friction * paper::kLoad, 0.0};
-      const ModelSolution solution = solve_in_model_units(scene);
-      if (solution.status == Status::converged) {
-        EXPECT_LE(solution.certificate.gap, 1e-8);
-        EXPECT_LE(solution.normal.complementarity, 1e-8);
-      } else {
-        EXPECT_NE(solution.message, "");
-      }
-    }
-  }
-}
-
 // --- Goodman, Spence ---
 
 Scene spence(Shape shape, Coupling coupling, Index cells) {
@@ -244,30 +221,6 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
   scene.steps[0].normal = 0.02;
   scene.steps[0].torsion = MomentRatio{0.0};
   return scene;
-}
-
-/// Stick radius over contact radius at mu = 0.2986 and beta = 1/2: if only pressure acts on shear, the root
-/// of artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)) (Goodman's approximation, Spence 1975); if shear acts on
-/// pressure too, 1/2 (Spence 1975).
-double exact_stick_ratio(Coupling coupling) { return coupling == Coupling::full ? 0.5 : 0.623310792994697; }
-
-double counted_stick_ratio(const ModelSolution& solution) {
-  return solution.stick_radius_counted / solution.contact_radius_counted;
-}
-
-class Spence : public testing::TestWithParam<Coupling> {};
-INSTANTIATE_TEST_SUITE_P(Coupling, Spence, testing::Values(Coupling::pressure, Coupling::full),
-                         coupling_name);
-
-/// All that a punch carries grows in proportion to its load, slip included, so that one step from nothing is
-/// the whole history. The mesh knows the stick radius to a part of a cell.
-TEST_P(Spence, HoldsUnderAFlatPunch) {
-  for (const Index cells : {48, 64}) {
-    const ModelSolution solution = solved(spence(Shape::flat_punch, GetParam(), cells));
-    const double cell = 2.0 / static_cast<double>(cells - 4);  // over the punch's radius
-    const double error = counted_stick_ratio(solution) - exact_stick_ratio(GetParam());
-    EXPECT_LE(std::abs(error), 0.25 * cell);
-  }
 }
 
 /// The scenes spence and spence_sphere: a turn starts from the last one and is solved no better than it has

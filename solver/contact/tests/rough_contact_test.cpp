@@ -76,14 +76,6 @@ TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
   EXPECT_EQ(last, 1.0);
 }
 
-/// Where spots have many cells, residuals are continued further: else this takes 46.
-TEST(RoughContact, TakesFewApplicationsOnAFineMesh) {
-  const RoughFace face(512);
-  const NormalSolution found = face.pressed(0.25);
-  EXPECT_EQ(found.status, Status::converged) << found.message;
-  EXPECT_LE(finest_grid_applications(found.grids), kWantedApplications);
-}
-
 /// Tractions on a body of many spots, at parts of the force that they carry: to next to none, where nothing
 /// slips and the problem is linear, and to nearly all. Where residuals end at the edges of spots the first
 /// takes 50.

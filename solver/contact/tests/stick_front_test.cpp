@@ -197,14 +197,41 @@ TEST(StickFront, IsNoFurtherFromTheCountedOneThanHalfACell) {
   }
 }
 
-TEST(StickFront, IsCountedWhereTheRingHoldsTooFewCells) {
-  const Fields fields = sample({.ring = 1.05}, 64);  // 0.8 cells
+void expect_counted(const Fields& fields, const char* why) {
   const StickFront front = fields.front();
+  EXPECT_THAT(front.why_counted, HasSubstr(why));
   EXPECT_EQ(front.fitted, 0.0);
   EXPECT_EQ(front.radius, front.counted_radius);
-  EXPECT_THAT(front.why_counted, HasSubstr("slip ring too narrow, or no root near by, on 104 of 104 rays"));
   EXPECT_DOUBLE_EQ(front.counted_radius,
                    std::sqrt(fields.stick.sum() * fields.grid.cell_area() / std::numbers::pi));
+}
+
+TEST(StickFront, IsCountedWhereItCannotBeFitted) {
+  // A ring of 0.8 cells; slip that jumps at the front.
+  expect_counted(sample({.ring = 1.05}, 64), "slip ring too narrow, or no root near by, on 104 of 104 rays");
+  Fields jump = sample({}, 128);
+  jump.slip = ((jump.stick == 0.0).cast<double>() * jump.bound).replicate(2, 1);
+  expect_counted(jump, "");
+  Fields fields = sample({}, 32);
+  fields.stick = (fields.bound > 0.0).cast<double>();
+  expect_counted(fields, "everything sticks");
+  fields.stick.setZero();
+  expect_counted(fields, "nothing sticks");
+  fields.stick[16 * 32 + 16] = 1.0;
+  expect_counted(fields, "only 1 cells stick");
+  // Rays from the centroid cannot describe a hole, two halves, a ring, an island.
+  const Fields whole = sample({.a = 0.5, .b = 0.5, .ring = 1.8}, 64);
+  const ArrayXd x1 = cell_x1(whole.grid);
+  const ArrayXd r2 = x1.square() + cell_x2(whole.grid).square();
+  const ArrayXd hole = ((x1 - 0.2).square() + cell_x2(whole.grid).square() < 0.01).cast<double>();
+  const ArrayXd island = ((x1 - 0.75).square() + cell_x2(whole.grid).square() < 0.005).cast<double>();
+  for (const ArrayXd& stick :
+       {ArrayXd(whole.stick * (1.0 - hole)), ArrayXd((x1.abs() < 0.15).select(0.0, whole.stick)),
+        ArrayXd((r2 < 0.04).select(0.0, whole.stick)), ArrayXd(whole.stick.max(island * whole.bound))}) {
+    Fields parts = whole;
+    parts.stick = stick;
+    expect_counted(parts, "not one patch");
+  }
 }
 
 /// Contact on one side only a cell away from the front.
@@ -220,51 +247,6 @@ TEST(StickFront, IsCountedOnThoseRaysAlone) {
   // The part x1 > 0.45 of a disc of radius 1/2, up to the staircase of the straight edge.
   const double area = 0.25 * (std::numbers::pi - std::acos(0.9)) + 0.45 * std::sqrt(0.25 - 0.45 * 0.45);
   EXPECT_NEAR(front.radius / std::sqrt(area / std::numbers::pi), 1.0, 2e-3);
-}
-
-TEST(StickFront, IsCountedWhereNothingOrEverythingSticks) {
-  Fields fields = sample({}, 32);
-  fields.stick = (fields.bound > 0.0).cast<double>();
-  EXPECT_EQ(fields.front().why_counted, "everything sticks");
-  EXPECT_NEAR(fields.front().radius, 0.8, 0.02);
-  fields.stick.setZero();
-  EXPECT_EQ(fields.front().why_counted, "nothing sticks");
-  EXPECT_EQ(fields.front().radius, 0.0);
-  fields.stick[16 * 32 + 16] = 1.0;
-  EXPECT_EQ(fields.front().why_counted, "only 1 cells stick");
-  fields.bound.setZero();
-  EXPECT_EQ(fields.front().radius, 0.0);
-}
-
-TEST(StickFront, IsCountedWhereRaysFromTheCentroidCannotDescribeTheStickArea) {
-  const Fields whole = sample({.a = 0.5, .b = 0.5, .ring = 1.8}, 64);
-  const ArrayXd x1 = cell_x1(whole.grid);
-  const ArrayXd x2 = cell_x2(whole.grid);
-  const auto without = [&](const auto& hole) {
-    Fields fields = whole;
-    fields.stick = hole.select(0.0, fields.stick);
-    return fields.front();
-  };
-  const auto hole = without(((x1 - 0.2).square() + x2.square()) < 0.01);
-  const auto two_halves = without(x1.abs() < 0.15);
-  const auto ring = without((x1.square() + x2.square()) < 0.04);
-  Fields island = whole;
-  island.stick = (((x1 - 0.75).square() + x2.square()) < 0.005).select(whole.bound, island.stick);
-  for (const StickFront& front : {hole, two_halves, ring, island.front()}) {
-    EXPECT_THAT(front.why_counted, HasSubstr("not one patch"));
-    EXPECT_EQ(front.radius, front.counted_radius);
-    EXPECT_EQ(front.fitted, 0.0);
-  }
-}
-
-/// Slip that jumps at the front has no root near it.
-TEST(StickFront, IsCountedWhereTheFitHasNoRootNearIt) {
-  Fields fields = sample({}, 128);
-  const ArrayXd slips = (fields.stick == 0.0).cast<double>() * fields.bound;
-  fields.slip = slips.replicate(2, 1);
-  const StickFront front = fields.front();
-  EXPECT_EQ(front.fitted, 0.0);
-  EXPECT_EQ(front.radius, front.counted_radius);
 }
 
 TEST(StickFront, IsNoNumberWhereTheFieldsAreNone) {

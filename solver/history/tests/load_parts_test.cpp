@@ -26,26 +26,6 @@ class LoadParts : public SceneFile {
   }
 };
 
-TEST_F(LoadParts, PartsEndWithTheStepAndGoStraightToIt) {
-  Scene scene;
-  scene.solver.substeps = 4;
-  const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
-  Step step = before;
-  step.torsion = Moment{0.03};
-  step.force = {10.0, -20.0};
-  const StepEnd end{.moment = -0.01, .force = {2.0, 0.0}};
-  const std::vector<Step> parts = parts_of(scene, step, &before, end);
-  ASSERT_EQ(parts.size(), 4U);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double part = 0.25 * static_cast<double>(k + 1);
-    EXPECT_NEAR(std::get<Moment>(parts[k].torsion).value, -0.01 + 0.04 * part, 1e-17);
-    EXPECT_NEAR(parts[k].force[0], 2.0 + 8.0 * part, 1e-14);
-    EXPECT_NEAR(parts[k].force[1], -20.0 * part, 1e-14);
-    EXPECT_EQ(parts[k].normal, 1000.0);
-  }
-  EXPECT_EQ(parts.back().force, step.force);
-}
-
 TEST_F(LoadParts, TheNormalLoadComesFirstWhileTheOthersStay) {
   Scene scene;
   scene.solver.substeps = 4;

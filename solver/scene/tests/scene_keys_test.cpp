@@ -80,19 +80,6 @@ Wrong wrong_for(const SettingKey& key) {
   }
 }
 
-/// Members that have defaults.
-std::string members(const Scene& scene) {
-  const Surface& surface = scene.surfaces[0];
-  return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.layer.kind == nullptr,
-      static_cast<int>(scene.contact.pressure), static_cast<int>(scene.contact.coupling),
-      static_cast<int>(scene.solver.method), static_cast<int>(scene.solver.model),
-      static_cast<int>(scene.solver.op), static_cast<int>(scene.solver.cell_traction), scene.solver.tolerance,
-      scene.solver.max_iterations, scene.solver.threads, scene.solver.rounding_seed, scene.cycles,
-      scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus, surface.at[0],
-      surface.at[1], surface.angle, surface.inner_radius, surface.map.unit);
-}
-
 class SceneKeys : public SceneFile {
  protected:
   /// The complaint about a wrong value for a key.
@@ -128,29 +115,6 @@ TEST_F(SceneKeys, BelongToTheShapesThatTheTableNames) {
           << key.name << " of " << shape << ": " << said;
     }
   }
-}
-
-TEST_F(SceneKeys, HaveDefaultsThatChangeNothing) {
-  std::size_t tried = 0;
-  for (const SettingKey& key : scene_keys()) {
-    const bool is_value =
-        key.type == KeyType::word || key.type == KeyType::flag ||
-        (!key.otherwise.empty() && key.otherwise.find_first_not_of("0123456789.e-[], ") == std::string::npos);
-    if (!is_value || key.otherwise == kRequired || key.name.starts_with("upper.shape.") ||
-        key.name == "upper.combine" || key.name == "load.force") {
-      continue;
-    }
-    const std::string shape = key.shapes.empty() ? "sphere" : key.shapes.front();
-    std::string text = scene_with(shape, false);
-    // Where the pressure comes from a file, that is no default.
-    const std::string file = "pressure = \"file\"\npressure_file = \"p.csv\"\n";
-    text.erase(text.find(file), file.size());
-    const Scene without = read_scene(write("scene.toml", text));
-    const Scene with = read_scene(write("scene.toml", text), {key.name + "=" + key.otherwise});
-    EXPECT_EQ(members(with), members(without)) << key.name;
-    ++tried;
-  }
-  EXPECT_GE(tried, 15u);
 }
 
 TEST_F(SceneKeys, StandInTheTableOnceEach) {
