@@ -67,7 +67,7 @@ class Triangles(unittest.TestCase):
             first = np.c_[np.zeros(2 * n, int), 1 + ring, 1 + (ring + 1) % (2 * n)]
             quads = np.vstack([np.c_[k + ring, k + 2 * n + ring, k + 2 * n + (ring + 1) % (2 * n), k + (ring + 1) % (2 * n)]
                                for k in range(1, 2 * n * (n - 1) + 1, 2 * n)])
-            triangles, _, shares = displacement.triangles_of([first, quads])
+            triangles, _, shares, _ = displacement.triangles_of([first, quads])
             pressure = np.sqrt(np.maximum(0, 1 - np.sum(vertices**2, axis=1)))
             places = np.array([[0.1, 0.05], [0.3, 0.4], [0.0, -0.8]])
             found = integrals(places, vertices[triangles], (pressure[triangles] * shares[:, None])[:, :, None])[0, :, 0]

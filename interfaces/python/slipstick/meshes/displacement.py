@@ -178,17 +178,20 @@ def _even(normal: Array, tangent: Array, distance: Array, position: Array, at_or
     return result * np.sign(position[1] - position[0])[:, None]
 
 
-def triangles_of(faces: list[Indices]) -> tuple[Indices, Indices, Array]:
-    """Linear triangles (t, 3) over all faces, the face of each, and its share. Quadrilaterals are cut along both diagonals, with half a
-    share each, so that no direction counts more; quadratic faces through all their nodes."""
+def triangles_of(faces: list[Indices]) -> tuple[Indices, Indices, Array, npt.NDArray[np.bool_]]:
+    """Linear triangles (t, 3) over all faces, the face of each, its share, and whether it is one of those that cover the face once.
+    Quadrilaterals are cut along both diagonals, with half a share each, so that no direction counts more; quadratic faces through all
+    their nodes."""
     parts, rows, shares, first = [], [], [], 0
     for array in faces:
         cut = np.array(_CUTS[array.shape[1]])
         parts.append(array[:, cut].reshape(-1, 3))
         rows.append(np.repeat(np.arange(first, first + len(array)), len(cut)))
-        shares.append(np.full(parts[-1].shape[0], 0.5 if array.shape[1] == 4 else 1.0))
+        twice = array.shape[1] == 4
+        shares.append(np.tile([[0.5, cut < 2] if twice else [1.0, True] for cut in range(len(cut))], (len(array), 1)))
         first += len(array)
-    return np.concatenate(parts), np.concatenate(rows), np.concatenate(shares)
+    share, once = np.concatenate(shares).T
+    return np.concatenate(parts), np.concatenate(rows), share, once.astype(bool)
 
 
 #: Triangles over the nodes of a face, by their number, in VTK's order: corners, then middles of edges, then the centre.

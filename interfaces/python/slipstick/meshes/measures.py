@@ -121,8 +121,9 @@ class Judge:
 
     def kernels(self, fields: list[Array], kernels: Sequence[str] = KERNELS[:5]) -> list[Kernels]:
         """Sums the displacements under several fields (n, 3) at once."""
-        densities = np.concatenate(fields, axis=1)[self.patches.rows] * self.patches.shares[:, None, None]
-        sums = integrals(self.patches.points[self.chosen], self.patches.corners, densities, kernels)
+        once = self.patches.once
+        densities = np.concatenate(fields, axis=1)[self.patches.rows[once]]
+        sums = integrals(self.patches.points[self.chosen], self.patches.corners[once], densities, kernels)
         return [Kernels(self.x[self.chosen], self.weights[self.chosen], self.sticks[self.chosen], sums[:, :, 3 * k:3 * k + 3],
                         values[self.chosen, 1:]) for k, values in enumerate(fields)]
 

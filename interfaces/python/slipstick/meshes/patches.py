@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import Delaunay
@@ -24,7 +25,7 @@ _PARTS = 4
 @dataclass(frozen=True)
 class Patches:
     """corners (t, 3, 2), m: of the triangles. rows (t, 3): the row of the field at each corner; on faces three times the same.
-    shares (t): the part of each triangle that counts, where several cover a face. weights (n), m^2: of each row in sums over the
+    shares (t): the part of each triangle that counts, where several cover a face. once (t): those that cover each face once. weights (n), m^2: of each row in sums over the
     contact."""
 
     kind: str
@@ -32,6 +33,7 @@ class Patches:
     corners: Array
     rows: Indices
     shares: Array
+    once: npt.NDArray[np.bool_]
     weights: Array
 
     @property
@@ -44,13 +46,13 @@ def patches_of(field: ContactField, right: Array) -> Patches:
     pressure (n) at its points carries."""
     if field.faces:
         assert field.vertices is not None
-        triangles, face, shares = triangles_of(field.faces)
+        triangles, face, shares, once = triangles_of(field.faces)
         corners = field.vertices[triangles]
         rows = np.repeat(face[:, None], 3, axis=1) if field.kind == "faces" else triangles
         at_corners = np.repeat((shares * _areas(corners) / 3)[:, None], 3, axis=1)
     else:
         rows = _triangulated(field.points)
-        corners, shares = field.points[rows], np.ones(len(rows))
+        corners, shares, once = field.points[rows], np.ones(len(rows)), np.ones(len(rows), dtype=bool)
         at_corners = _corner_areas(corners, rows)
     weights = field.area
     if weights is None:
@@ -58,7 +60,7 @@ def patches_of(field: ContactField, right: Array) -> Patches:
     carries = ((field.pressure != 0) | (right != 0))[rows].any(axis=1) & (_areas(corners) > 0)
     # Without a mesh the shape functions behind nodal forces are unknown.
     kind = "nodes" if field.kind == "forces" and not field.faces else field.kind
-    return Patches(kind, field.points, corners[carries], rows[carries], shares[carries], weights)
+    return Patches(kind, field.points, corners[carries], rows[carries], shares[carries], once[carries], weights)
 
 
 def areas_around(points: Array) -> Array:

@@ -10,7 +10,7 @@ from .names import Arrays
 from .units import Units
 from .values import HOW_TO_NAME, Options
 
-_LEAST_ANGLES, _MOST_NODES = 36, 20000
+_LEAST_ANGLES, _MOST_NODES = 36, 8000
 _MOST_RADII = _MOST_NODES // _LEAST_ANGLES
 
 
