@@ -123,11 +123,11 @@ class TableTest(ReadTest):
         np.savez(self.folder / "arrays.npz", **columns)
         self.assert_exact(read(self.folder / "arrays.npz"))
         self.assert_exact(read(np.rec.fromarrays(list(columns.values()), names=list(columns))))
-        self.assert_exact(read({name.replace("p", "lam"): column for name, column in columns.items()}, names="pressure=lam"))
+        self.assert_exact(read({name.replace("p", "lam"): column for name, column in columns.items()}, names={"pressure": "lam"}))
         vectors = np.column_stack([columns["qx"], columns["qy"]])
         self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names={"shear": "mine"}))
-        self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names="q1=mine:0,q2=mine:1"))
-        self.assert_refused('it has no column "mine:2"', {**columns, "mine": vectors}, names="q1=mine:2")
+        self.assert_exact(read({**columns, "qx": -columns["qx"], "mine": vectors}, names={"q1": "mine:0", "q2": "mine:1"}))
+        self.assert_refused('it has no column "mine:2"', {**columns, "mine": vectors}, names={"q1": "mine:2"})
 
     def test_planes_of_points_in_space(self):
         points, _ = MESHES["polar"]
@@ -154,6 +154,7 @@ class TableTest(ReadTest):
         twice = read({name: np.concatenate([column, column[:5]]) for name, column in columns.items()})
         self.assertEqual(len(twice.points), len(columns["x"]))
         self.assert_refused('kind = "cells"; allowed: nodes, faces, points, forces', columns, kind="cells")
+        self.assert_refused('axis = "w"; allowed: x, y, z', columns, axis="w")
 
     def test_refusals(self):
         self.assert_refused("there is no such file", self.folder / "none.csv")
@@ -382,8 +383,7 @@ class MeshTest(ReadTest):
             return self.file("m.vtu", vtu(where, cells, arrays, {}))
         self.assert_refused("no array is named like a pressure; it has the point arrays 'stress'", written(stress=data["CPRESS"]))
         self.assert_refused('it has no point array "p0"', written(**data), names={"pressure": "p0"})
-        self.assert_refused('names: "pres"; allowed: x1', written(**data), names="pres=CPRESS")
-        self.assert_refused('axis = "w"; allowed: x, y, z', written(**data), axis="w")
+        self.assert_refused('names: "pres"; allowed: x1', written(**data), names={"pres": "CPRESS"})
         bowl = np.column_stack([points, 0.5 * (points**2).sum(axis=1) / RADIUS])
         self.assert_refused("the contact's surface is curved", written(bowl, **data))
         raw = vtu(points, cells, data, {}, "raw", "vtkZLibDataCompressor")

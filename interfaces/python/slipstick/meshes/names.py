@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Optional, Union
+from typing import Optional
 
 import numpy as np
 
 from ..errors import InputError
 from .field import Array, Indices
 
-Names = Union[None, str, Mapping[str, str]]
+Names = Optional[Mapping[str, str]]
 
 _SHEAR = ("q", "cshear", "shear", "t", "tau", "tangent traction", "tangential traction", "shear traction", "shear stress",
           "tangential stress", "tangent stress", "friction", "friction stress", "frictional stress", "contact shear")
@@ -48,14 +48,11 @@ def _plain(name: str) -> str:
     return re.sub(r"[\s_.:-]", "", name.lower())
 
 
-def given_names(names: Names) -> dict[str, str]:
-    """Names given as a dict or as "pressure=NAME,q1=NAME"."""
-    if isinstance(names, str):
-        pairs = [part.partition("=") for part in names.split(",") if part.strip()]
-        names = {role.strip(): name.strip() for role, _, name in pairs}
+def checked_names(names: Names) -> dict[str, str]:
+    """The arrays' names that the user gives for meanings, which must be keys of SCALARS or VECTORS."""
     for role in names or {}:
         if role not in SCALARS and role not in VECTORS:
-            raise InputError(f'names: "{role}"; allowed: {", ".join((*SCALARS, *VECTORS))}, each with = and the name of an array')
+            raise InputError(f'names: "{role}"; allowed: {", ".join((*SCALARS, *VECTORS))}, each with the name of an array')
     return dict(names or {})
 
 

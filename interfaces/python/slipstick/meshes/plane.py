@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Union
+from typing import Optional, Union
 
 import numpy as np
 
@@ -50,11 +50,14 @@ def _projected(normal: Array) -> Array:
     return np.asarray(along / np.linalg.norm(along))
 
 
-def _given_normal(axis: Axis) -> Array:
+def given_normal(axis: Axis) -> Optional[Array]:
+    """The unit vector of a word or of three components; None: none is given."""
+    if axis is None:
+        return None
     if isinstance(axis, str) and axis.lstrip("+-") in ("x", "y", "z"):
         return np.eye(3)["xyz".index(axis[-1])] * (-1 if axis.startswith("-") else 1)
     try:
-        normal = np.array([float(part) for part in (axis.split(",") if isinstance(axis, str) else axis or ())])
+        normal = np.array([float(part) for part in (axis.split(",") if isinstance(axis, str) else axis)])
     except ValueError:
         normal = np.empty(0)
     if normal.shape != (3,) or not np.linalg.norm(normal) > 0:
@@ -62,13 +65,11 @@ def _given_normal(axis: Axis) -> Array:
     return np.asarray(normal / np.linalg.norm(normal))
 
 
-def frame_of(contact: Array, axis: Axis, source: str) -> Frame:
-    """The frame of points (n, 3) in contact: the plane nearest to them, or a given normal."""
-    if axis is not None:
-        normal = _given_normal(axis)
-    elif len(contact) < 3:
-        raise InputError(f"{source}: {len(contact)} points have a pressure; allowed: 3 or more, to find the contact's plane")
-    else:
+def frame_of(contact: Array, normal: Optional[Array], source: str) -> Frame:
+    """The frame of points (n, 3) in contact: with a given normal, or else in the plane nearest to them."""
+    if normal is None:
+        if len(contact) < 3:
+            raise InputError(f"{source}: {len(contact)} points have a pressure; allowed: 3 or more, to find the contact's plane")
         normal = np.linalg.svd(contact - contact.mean(axis=0), full_matrices=False)[2][2]
         normal = normal * np.sign(normal[abs(normal).argmax()])
         if abs(normal).max() > 1 - 2e-4:  # 1 degree

@@ -4,8 +4,8 @@ The reader takes the likely choice where the source leaves one open, and says so
 
 kind    key of field.KINDS. Meshes: cell data with pressure and shear are "faces", else point data are "nodes". Tables: rows with
         an area are "points", others "nodes".
-names   the arrays' names, as {"pressure": NAME, ...} or "pressure=NAME,q1=NAME"; keys: names.SCALARS and names.VECTORS. NAME:2 is
-        the column 2 of an array, from 0.
+names   the arrays' names, as {"pressure": NAME, "q1": NAME}; keys: names.SCALARS and names.VECTORS. NAME:2 is the column 2 of an
+        array, counted from 0.
 units   "mm,MPa", "mm,N" and so on. Without it: the header's units, else m and Pa (see units.in_units_of).
 body    "lower" or "upper": the body on which the shear of the source acts.
 axis    the contact's normal from the lower body to the upper one: x, y, z, -x, -y, -z or three components.
@@ -26,9 +26,9 @@ from .field import Array, ContactField
 from .files import load
 from .files.mesh import FACES, Mesh, in_space
 from .files.tables import FORMS
-from .names import Arrays, Names, given_names
+from .names import Arrays, Names, checked_names
 from .patches import areas_around
-from .plane import Axis, Frame, check_flat, frame_of
+from .plane import Axis, Frame, check_flat, frame_of, given_normal
 from .radial import of_radial_table
 from .surface import KNOWN, contact_faces, face_areas, faces_of, nodal_areas, vertices_in_plane
 from .units import Units
@@ -38,7 +38,7 @@ from .values import HOW_TO_NAME, Options, Values, loaded, values_of
 def read(source: Any, *, kind: Optional[str] = None, names: Names = None, units: Optional[str] = None, body: Optional[str] = None,
          axis: Axis = None, basis: Optional[str] = None, centre: Optional[Sequence[float]] = None) -> ContactField:
     """The contact of a file, of a mesh of meshio or pyvista, or of a table of arrays; this module's text explains the options."""
-    options = Options(kind, given_names(names), body, axis, basis)
+    options = Options(kind, checked_names(names), body, given_normal(axis), basis)
     name = Path(source).name if isinstance(source, (str, Path)) else f"the {type(source).__name__}"
     mesh = load(source, name)
     scale = Units(units, mesh.units, name)
@@ -76,7 +76,8 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
     field = _without_duplicates(_field(kind, points, values, area=area, name=name))
     if values.are_forces and field.area is None:
         field.area = areas_around(field.points)
-        field.said.append("Area: the forces are divided by a third of the triangles around each point (Delaunay), or a fourth of rectangles.")
+        field.said.append("Area: the forces are divided by a third of the triangles around each point (Delaunay), or by a fourth "
+                          "of rectangles.")
     return _over_areas(field) if values.are_forces else field
 
 
@@ -90,7 +91,7 @@ def _points_of(arrays: Arrays, options: Options, units: Units, name: str) -> tup
     if len(columns) < 3:
         return points[:, :2], Frame(*np.eye(3))
     contact = points[loaded(arrays)]
-    frame = frame_of(contact, options.axis, name)
+    frame = frame_of(contact, options.normal, name)
     check_flat(contact, frame, name)
     return frame.in_plane(points), frame
 
@@ -143,7 +144,7 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
         on_faces, in_contact = in_contact, np.zeros(len(mesh.points), bool)
         for one in faces:
             in_contact[one.nodes[on_faces[one.rows]]] = True
-    frame = frame_of(mesh.points[in_contact], options.axis, name)
+    frame = frame_of(mesh.points[in_contact], options.normal, name)
     check_flat(mesh.points[in_contact], frame, name)
     chosen, owner, said = contact_faces(faces, outer, mesh.points, in_contact, frame, options.body == "upper", name)
     vertices, of_types, nodes = vertices_in_plane(chosen, mesh.points, frame)
@@ -159,8 +160,8 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
         return _field("faces", points, values, area=areas, vertices=vertices, faces=of_types, name=name)
     kind = "forces" if values.are_forces else options.kind or "nodes"
     if kind == "forces" and any(faces.shape[1] > 4 for faces in of_types):
-        raise InputError(f"{name}: nodal forces on quadratic faces, whose corners carry nothing or less under a uniform pressure; allowed: "
-                         "values at nodes or faces, or forces on linear faces")
+        raise InputError(f"{name}: nodal forces on quadratic faces, whose corners carry nothing or less under a uniform "
+                         "pressure; allowed: values at nodes or faces, or forces on linear faces")
     area = nodal_areas(of_types, vertices) if kind == "forces" else None
     field = _field(kind, vertices, values, area=area, vertices=vertices, faces=of_types, name=name)
     return _over_areas(field) if values.are_forces else field

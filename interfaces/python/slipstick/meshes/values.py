@@ -10,7 +10,7 @@ import numpy.typing as npt
 from ..errors import InputError
 from .field import KINDS, Array
 from .names import SCALARS, VECTORS, Arrays
-from .plane import Axis, Frame
+from .plane import Frame
 from .units import Units
 
 HOW_TO_NAME = "its names given, as --read-as pressure=NAME (" + ", ".join((*SCALARS, *VECTORS)) + ")"
@@ -23,7 +23,7 @@ class Options:
     kind: Optional[str]
     names: dict[str, str]
     body: Optional[str]
-    axis: Axis
+    normal: Optional[Array]
     basis: Optional[str]
 
     def __post_init__(self) -> None:

@@ -87,22 +87,19 @@ def of_meshio(mesh: Any) -> Mesh:
 
 
 def of_pyvista(grid: Any) -> Mesh:
-    """A pyvista.UnstructuredGrid or .PolyData; of the latter, its polygons."""
-    before, after = 0, None
-    if hasattr(grid, "celltypes"):
-        flat, types = np.asarray(grid.cells), np.asarray(grid.celltypes)
-    else:
-        flat, types = np.asarray(grid.faces), None
-        before = int(getattr(grid, "n_verts", 0)) + int(getattr(grid, "n_lines", 0))
-    sizes, place = [], 0
+    """A pyvista.UnstructuredGrid or .PolyData; of the latter, its polygons, whose data follow those of points and lines."""
+    is_grid = hasattr(grid, "celltypes")
+    flat = np.asarray(grid.cells if is_grid else grid.faces, np.int64)  # each cell's number of nodes before the nodes
+    starts = []
+    place = 0
     while place < len(flat):
-        sizes.append(int(flat[place]))
-        place += sizes[-1] + 1
-    counts = np.array(sizes, np.int64)
-    nodes = np.delete(flat, np.cumsum(counts + 1) - counts - 1)
-    after = before + len(counts)
-    return of_vtk(grid.points, np.full(len(counts), 7) if types is None else types, counts, nodes, dict(grid.point_data),
-                  {name: np.asarray(array)[before:after] for name, array in dict(grid.cell_data).items()})
+        starts.append(place)
+        place += int(flat[place]) + 1
+    sizes = flat[starts]
+    types = grid.celltypes if is_grid else np.full(len(sizes), 7)
+    first = 0 if is_grid else grid.n_verts + grid.n_lines
+    return of_vtk(grid.points, types, sizes, np.delete(flat, starts), dict(grid.point_data),
+                  {name: np.asarray(array)[first:first + len(sizes)] for name, array in dict(grid.cell_data).items()})
 
 
 def of_columns(source: Any, name: str) -> Mesh:
