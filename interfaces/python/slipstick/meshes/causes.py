@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, Callable, Optional
 
 import numpy as np
@@ -11,7 +12,7 @@ from .displacement import KERNELS
 from .field import Array
 from .measures import Bodies
 from .right import Right
-from .verdict import Examined, percent
+from .verdict import Examined, Judged, percent
 
 #: A mistake explains an error that it lowers to this part, or to the mesh's own.
 _EXPLAINS = 0.35
@@ -22,21 +23,25 @@ _SPRINGS = np.logspace(-2.5, 1, 8)
 
 _NORMAL, _TANGENTIAL = "layer.normal_compliance", "layer.tangential_compliance"
 
+Request = Mapping[str, Any]
 Solve = Callable[[Mapping[str, Any]], Right]
 
 
 def causes_of(examined: Examined, request: Mapping[str, Any], solve: Solve) -> list[str]:
-    """The causes that explain what is wrong, most specific first. solve: the right answer with further keys of the scene."""
+    """The causes that explain what is wrong. solve: the right answer with further keys of the scene."""
     wrong = {item.quantity for item in examined.wrong}
-    searches = (_no_friction(examined), _other_basis(examined, wrong), _pressed_with_friction(examined, wrong),
-                _extrapolated(examined, wrong), _missing_rows(examined, wrong), _other_contact(examined, wrong),
-                _other_friction(examined, request, wrong), _other_moment(examined, request, solve, wrong),
-                _lost_history(examined, request, wrong), _other_twist(examined, request, wrong),
-                _springs(examined, request, solve, wrong), _kernels(examined, request, wrong), _directions(examined, wrong))
-    found: list[str] = []
-    for search in searches:
-        found += list(search)
-    return found
+    if no_friction := list(_no_friction(examined, request, solve, wrong)):
+        return no_friction
+    found = [cause for search in (_other_basis, _missing_rows, _other_units, _other_contact) for cause in
+             search(examined, request, solve, wrong)]
+    kernel = list(_kernels(examined, request, solve, wrong))
+    if not kernel:
+        found += _pressed_with_friction(examined, request, solve, wrong)
+    for search in (_extrapolated, _other_friction, _other_moment, _lost_history):
+        found += search(examined, request, solve, wrong)
+    twist = list(_other_twist(examined, request, solve, wrong))
+    found += kernel + (twist or ([] if kernel or found else list(_soft_penalty(examined, request, solve, wrong))))
+    return found + ([] if found else list(_directions(examined, request, solve, wrong)))
 
 
 def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) -> float:
@@ -46,20 +51,25 @@ def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) 
     return float(judge.weights @ np.hypot(*(own - fields[:, 1:]).T) / (judge.weights @ judge.size))
 
 
+def _number(examined: Examined, quantity: str) -> Judged:
+    number = examined.number(quantity)
+    assert number is not None  # it is measured in every field
+    return number
+
+
 def _explained(examined: Examined, distance: float) -> bool:
     """Whether a mistake explains the tractions: it lowers their distance from the right ones to a part, or to what the mesh allows."""
-    own = examined.number("tractions")
-    assert own is not None
+    own = _number(examined, "tractions")
     return distance < _EXPLAINS * abs(own.value) or (distance <= own.allowed < abs(own.value))
 
 
-def _no_friction(examined: Examined) -> Iterator[str]:
+def _no_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     judge = examined.judge
     if judge.weights @ np.hypot(*examined.values[:, 1:].T) < 1e-3 * (judge.weights @ judge.size):
         yield "friction was zero: the field has no shear"
 
 
-def _other_basis(examined: Examined, wrong: set[str]) -> Iterator[str]:
+def _other_basis(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     if "tractions" not in wrong:
         return
     signs = {"q1 has the wrong sign": [[-1, 0], [0, 1]], "q2 has the wrong sign": [[1, 0], [0, -1]],
@@ -72,41 +82,53 @@ def _other_basis(examined: Examined, wrong: set[str]) -> Iterator[str]:
         yield f"the shear is given in another tangential basis: {best}"
 
 
-def _pressed_with_friction(examined: Examined, wrong: set[str]) -> Iterator[str]:
+def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     if "radial_shear" in wrong:
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
 
 
-def _extrapolated(examined: Examined, wrong: set[str]) -> Iterator[str]:
+def _extrapolated(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     judge = examined.judge
     beyond = (examined.values[:, 0] > 0) & (judge.reference[:, 0] == 0) & (judge.weights > 0)
-    load = examined.number("normal_load")
-    assert load is not None
-    too_much = (load.value > 0 and not load.holds) or "friction_bound" in wrong
-    if examined.field.kind != "faces" and too_much and beyond.any():
+    too_much = any(item.value > 0 for item in examined.wrong if item.quantity in ("normal_load", "moment", "friction_bound"))
+    if examined.field.kind != "faces" and "friction" not in wrong and too_much and beyond.any():
         yield ("the values are extrapolated to nodes, where they do not carry the loads and exceed the friction bound: use values of "
                "faces or of quadrature points")
 
 
-def _missing_rows(examined: Examined, wrong: set[str]) -> Iterator[str]:
-    load, pressure = examined.number("normal_load"), examined.number("pressure")
-    judge = examined.judge
-    assert load is not None and pressure is not None
+def _missing_rows(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    load, pressure, judge = _number(examined, "normal_load"), _number(examined, "pressure"), examined.judge
+    if "coverage" in wrong:
+        yield f"rows are missing: {percent(_number(examined, 'coverage').value)} of the contact has none"
+        return
     given = examined.values[:, 0] > 0
     off = judge.weights[given] @ np.abs(examined.values[given, 0] - judge.reference[given, 0])
     if load.value < 0 and not load.holds and off < max(pressure.allowed, _EXPLAINS * abs(load.value)) * examined.right.normal_load:
-        yield f"the pressure is right where it is given: {percent(load.value)} of the contact is missing"
+        yield f"rows are missing: the pressure is right where it is given, but {percent(load.value)} of the load is not"
 
 
-def _other_contact(examined: Examined, wrong: set[str]) -> Iterator[str]:
-    radius, load = examined.number("contact_radius"), examined.number("normal_load")
-    assert radius is not None and load is not None
-    if not radius.holds and load.holds:
-        yield (f"another modulus or radius of the body, or a coarse mesh around the contact: its contact is "
-               f"{percent(radius.value)} too {'large' if radius.value > 0 else 'small'} under the same load")
+def _other_units(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    if "normal_load" in wrong and "pressure" not in wrong and "contact_radius" not in wrong:
+        load = 1 + _number(examined, "normal_load").value
+        yield f"the pressure has the right shape, but is in another unit or carries another load: {load:.4g} of the scene's"
 
 
-def _other_friction(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+def _other_contact(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """Another size of the contact; a soft normal penalty enlarges it, too."""
+    radius = _number(examined, "contact_radius")
+    if radius.holds or "normal_load" in wrong:
+        return
+    soft = ""
+    if radius.value > 0 and _may_have_springs(request):
+        compliances, answers = _with_springs(examined, request, solve, _NORMAL)
+        radii = [answer.contact_radius / examined.right.contact_radius - 1 for answer in answers]
+        if radii and radius.value < max(radii):
+            soft = f", a soft normal penalty (about {1 / np.interp(radius.value, [0, *radii], [1e-99, *compliances]):.1g} Pa/m)"
+    yield (f"another modulus or radius of the body{soft}, or a coarse mesh around the contact: its contact is {percent(radius.value)} too "
+           f"{'large' if radius.value > 0 else 'small'} under the same load")
+
+
+def _other_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     ratio = examined.judge.friction_ratio(examined.values)
     friction = examined.number("friction")
     if "friction" not in wrong or friction is None or request["friction"]["kind"] != "coulomb":
@@ -117,7 +139,7 @@ def _other_friction(examined: Examined, request: Mapping[str, Any], wrong: set[s
         yield f"the friction coefficient is {coefficient * (1 + friction.value):.4g} in place of {coefficient:g}"
 
 
-def _other_moment(examined: Examined, request: Mapping[str, Any], solve: Solve, wrong: set[str]) -> Iterator[str]:
+def _other_moment(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     moment = examined.number("moment")
     if moment is None or "moment" not in wrong or not 0 < (ratio := 1 + moment.value) < 2.2 or request["torsion"] is None:
         return
@@ -137,21 +159,21 @@ def _other_moment(examined: Examined, request: Mapping[str, Any], solve: Solve, 
         yield "the moment is twice the scene's: it was applied to both bodies, or counted twice"
 
 
-def _lost_history(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+def _lost_history(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     if "tractions" not in wrong:
         return
     if (first := request.get("first_loading")) is not None:
         from .right import exact_answer
         if _explained(examined, _distance(examined, exact_answer(first).fields(examined.patches.points))):
             yield "the history is lost: the tractions are those of a first loading by the last step"
-    elif request["steps"] == 1 and "moment" not in wrong and examined.judge.slips.sum() > 8:
+    elif request["steps"] == 1 and not wrong & {"moment", "friction"} and examined.judge.slips.sum() > 8:
         judge = examined.judge
         along = np.sum(examined.values[judge.slips, 1:] * judge.reference[judge.slips, 1:], axis=1)
         if np.mean(along < 0) > 0.2:
             yield "the tractions are those after a reversal: at the contact's edge they oppose this load"
 
 
-def _other_twist(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+def _other_twist(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     if examined.reported is None or "twist" not in wrong:
         return
     ratio = examined.reported / examined.right_twist
@@ -167,42 +189,38 @@ def _other_twist(examined: Examined, request: Mapping[str, Any], wrong: set[str]
             return
 
 
-def _springs(examined: Examined, request: Mapping[str, Any], solve: Solve, wrong: set[str]) -> Iterator[str]:
-    """Repeats the solve with springs between the bodies. Soft tangential ones turn the bodies further than the tractions do; soft normal
-    ones enlarge the contact."""
-    if request["stick_slope"] or request["normal_stiffness"] or not request["half_spaces"] or request["layer"]:
-        return
+def _may_have_springs(request: Request) -> bool:
+    return bool(not (request["stick_slope"] or request["normal_stiffness"] or request["layer"]) and request["half_spaces"])
+
+
+def _with_springs(examined: Examined, request: Request, solve: Solve, key: str) -> tuple[Array, list[Right]]:
+    """Compliances, m/Pa, of springs between the bodies, and the right answers with them."""
     unit = examined.right.contact_radius * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"])
-
-    def solved(key: str) -> tuple[Array, list[Right]]:
-        answers, other = [], _TANGENTIAL if key == _NORMAL else _NORMAL
-        for compliance in _SPRINGS:
-            try:
-                answers.append(solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}))
-            except InputError:  # the contact is larger than the grid
-                break
-        return unit * _SPRINGS[:len(answers)], answers
-
-    twist, motion, radius = examined.number("twist"), examined.motion, examined.number("contact_radius")
-    assert radius is not None
-    if twist is not None and motion is not None and "twist" in wrong and examined.reported is not None:
-        further = examined.reported / motion.twist - 1
-        if further > twist.allowed:
-            compliances, answers = solved(_TANGENTIAL)
-            twists = [answer.twist / examined.right.twist - 1 for answer in answers]
-            if twists and further < max(twists):
-                slope = 1 / np.interp(further, [0, *twists], [1e-9 * unit, *compliances])
-                yield (f"the penalty lets the contact slip where it should stick: a stick slope of about {slope:.1g} Pa/m turns the "
-                       f"bodies {percent(further)} further than the tractions do")
-    if "contact_radius" in wrong and radius.value > 0:
-        compliances, answers = solved(_NORMAL)
-        radii = [answer.contact_radius / examined.right.contact_radius - 1 for answer in answers]
-        if radii and radius.value < max(radii):
-            stiffness = 1 / np.interp(radius.value, [0, *radii], [1e-9 * unit, *compliances])
-            yield f"the normal penalty is soft: a stiffness of about {stiffness:.1g} Pa/m makes the contact as large"
+    answers, other = [], _TANGENTIAL if key == _NORMAL else _NORMAL
+    for compliance in _SPRINGS:
+        try:
+            answers.append(solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}))
+        except InputError:  # the contact is larger than the grid
+            break
+    return unit * _SPRINGS[:len(answers)], answers
 
 
-def _kernels(examined: Examined, request: Mapping[str, Any], wrong: set[str]) -> Iterator[str]:
+def _soft_penalty(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """Soft tangential springs turn the bodies further than the tractions do."""
+    twist, motion = examined.number("twist"), examined.motion
+    if twist is None or motion is None or examined.reported is None or "twist" not in wrong or not _may_have_springs(request):
+        return
+    further = examined.reported / motion.twist - 1
+    if further > twist.allowed:
+        compliances, answers = _with_springs(examined, request, solve, _TANGENTIAL)
+        twists = [answer.twist / examined.right.twist - 1 for answer in answers]
+        if twists and further < max(twists):
+            slope = 1 / np.interp(further, [0, *twists], [1e-99, *compliances])
+            yield (f"the penalty lets the contact slip where it should stick: a stick slope of about {slope:.1g} Pa/m turns the bodies "
+                   f"{percent(further)} further than the tractions do")
+
+
+def _kernels(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     """Tries wrong kernels: the stick area of a solver moves rigidly under the kernel that it has."""
     motion, scatter = examined.motion, examined.number("stick_motion")
     if motion is None or scatter is None or "stick_motion" not in wrong:
@@ -215,19 +233,25 @@ def _kernels(examined: Examined, request: Mapping[str, Any], wrong: set[str]) ->
         u = kernels.displacement(bodies, **mistake)
         return judge.rigid(kernels, u).scatter
 
-    no_poisson = {name: {**request[name], "poisson_ratio": 0.0} for name in ("upper", "lower")}
+    def with_poisson(ratio: float) -> Bodies:
+        return Bodies.of(*({**request[name], "poisson_ratio": ratio} for name in ("upper", "lower")), bodies.spring)
+
     bodies = judge.bodies
     tried = {"the cross kernel K12, odd in x1 and in x2, is mirrored as an even function": (bodies, {"even": True}),
              "the cross kernel K12 is missing": (bodies, {"cross": 0.0}),
              "the cross kernel K12 has the wrong sign": (bodies, {"cross": -1.0}),
              "K11 and K22 are exchanged": (bodies, {"swapped": True}),
-             "Poisson's ratio is zero": (Bodies.of(no_poisson["upper"], no_poisson["lower"], bodies.spring), {})}
+             **{f"Poisson's ratio is {ratio:g}": (with_poisson(ratio), {}) for ratio in (0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5)}}
+    if abs(bodies.coupled) > 1e-3 * bodies.normal:
+        tried["the coupling K13 and K23 of normal and tangential tractions is missing"] = replace(bodies, coupled=0.0), {}
+        tried["the coupling K13 and K23 of normal and tangential tractions has the wrong sign"] = (
+            replace(bodies, coupled=-bodies.coupled), {})
     scatters = {name: scatter_with(kind, **mistake) for name, (kind, mistake) in tried.items()}
     best = min(scatters, key=lambda name: scatters[name])
     if scatters[best] < _EXPLAINS * scatter.value:
         yield best
 
 
-def _directions(examined: Examined, wrong: set[str]) -> Iterator[str]:
-    if "slip_direction" in wrong and not wrong & {"friction", "radial_shear", "stick_motion"}:
+def _directions(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    if "slip_direction" in wrong and "friction" not in wrong:
         yield "slipping points keep a direction that does not oppose their slip"

@@ -180,7 +180,8 @@ def _text(result: Mapping[str, Any], examined: Examined) -> str:
     def line(name: str, value: str) -> str:
         return f"  {name:<16} {value}\n"
 
-    text = f"{result['verdict']}: {result['why']}\n"
+    turned = [choice.split(", since")[0] for choice in result["choices"] if choice.startswith("Body: the tractions")]
+    text = f"{result['verdict']}{''.join(f' ({note[6:]})' for note in turned)}: {result['why']}\n"
     text += line("field", f"{result['field']}: {result['rows']} {result['kind']}, {result['faces_across']:.3g} across the radius")
     text += "".join(line("" if k else "read as", choice) for k, choice in enumerate(result["choices"]))
     text += line("compared with", "; ".join([result["right_answer"], *examined.notes]))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field as with_default
 from typing import Any, Optional
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from .field import Array, ContactField
 from .measures import Bodies, Judge, Kernels, Law, Motion
@@ -15,7 +16,7 @@ from .right import Right
 #: Errors of right answers on the mesh, times this, are allowed: they know the mesh's own error to about a half.
 _WHOLE_MESH = 2.0
 #: Allowed whatever the mesh is: digits of moduli, loads and friction coefficients, tolerances of iterations.
-_FLOORS = {"normal_load": 2e-3, "contact_radius": 2e-3, "pressure": 5e-3, "moment": 2e-3, "force": 2e-3, "friction": 3e-3,
+_FLOORS = {"coverage": 1e-2, "normal_load": 2e-3, "contact_radius": 2e-3, "pressure": 5e-3, "moment": 2e-3, "force": 2e-3, "friction": 3e-3,
            "friction_bound": 1e-3, "stick_radius": 5e-3, "tractions": 5e-3, "radial_shear": 5e-3, "twist": 2e-3,
            "twist_of_tractions": 2e-3, "displacement_of_tractions": 2e-3, "stick_motion": 5e-3, "slip_direction": 0.5}
 #: A mesh that explains more than this part of the tractions cannot show whether they are right.
@@ -24,6 +25,7 @@ _SHOWS = 0.2
 _WELL = 0.05
 
 _WRONG = {
+    "coverage": "{part} of the contact has no rows",
     "normal_load": "the normal load is {off}", "contact_radius": "the contact radius is {off}",
     "pressure": "the pressure is {part} off in the mean", "moment": "the moment is {off}",
     "force": "the tangential force is off by {part} of the limit", "friction": "|q| is {off} for its friction bound where it slips",
@@ -36,7 +38,7 @@ _WRONG = {
     "slip_direction": "slip is not opposed to traction: {degrees} off in the mean",
 }
 #: The order in which the first wrong quantity heads the verdict: causes before effects.
-_ORDER = ("normal_load", "contact_radius", "pressure", "moment", "force", "radial_shear", "friction", "friction_bound", "tractions",
+_ORDER = ("coverage", "normal_load", "contact_radius", "pressure", "moment", "force", "radial_shear", "friction", "friction_bound", "tractions",
           "stick_radius", "twist", "twist_of_tractions", "displacement_of_tractions", "stick_motion", "slip_direction")
 
 
@@ -127,6 +129,7 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     kernels: list[Any] = [None] * len(fields) if bodies is None else judge.kernels(fields)
     found, *measured = [judge.measure(*each) for each in zip(fields, kernels)]
     worst = {name: max(abs(each.get(name, 0.0)) for each in measured) for name in _FLOORS}
+    found["coverage"] = _uncovered(patches, right)
     right_twist = right.twist - held
     if reported is not None:
         found["twist"] = reported / right_twist - 1
@@ -151,3 +154,21 @@ def _carrying(judge: Judge, values: Array) -> Array:
         right.force @ right.force / along)
     return values * np.array([right.normal_load / load, shear, shear])
 
+
+
+def _uncovered(patches: Patches, right: Right) -> float:
+    """The part of the right normal load at places that are further from the nearest row than its triangles reach."""
+    places = right.centre + 1.5 * right.contact_radius * _disc()
+    pressure = right.fields(places)[:, 0]
+    edges = np.linalg.norm(patches.corners - np.roll(patches.corners, 1, axis=1), axis=2).max(axis=1)
+    reach = np.zeros(len(patches.points))
+    np.maximum.at(reach, patches.rows, edges[:, None])
+    away, nearest = KDTree(patches.points).query(places)
+    return float(pressure @ (away > reach[nearest]) / pressure.sum())
+
+
+def _disc() -> Array:
+    """Places with equal parts of the unit disc, along a spiral (Vogel 1979)."""
+    k = np.arange(4000) + 0.5
+    angle = np.pi * (1 + np.sqrt(5)) * k
+    return np.sqrt(k / len(k))[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
