@@ -62,29 +62,6 @@ TEST(PowerProfile, TellsItsPeak) {
   }
 }
 
-TEST(RoundedPunchProfile, TendsToTheFlatPunch) {
-  double before = 1;
-  for (const double gap : {0.1, 1e-3, 1e-6, 1e-9, 1e-12}) {
-    SCOPED_TRACE(gap);
-    const auto profile = rounded_punch_profile(1 - gap);
-    const auto off = [](double value, double limit) { return std::abs(value / limit - 1); };
-    const double error = off(profile->moment_limit(), pi / 4);
-    EXPECT_LT(error, 2 * gap);
-    EXPECT_LT(error, before);
-    before = error;
-    EXPECT_LT(off(profile->pressure(0.5), 0.5 / std::sqrt(0.75)), 2 * gap);
-    EXPECT_LT(off(profile->twist_integral(at(0.5)), flat_punch_profile().twist_integral(at(0.5)) / 2),
-              2 * gap);
-    EXPECT_LT(off(profile->stick_traction(at(0.5), 0.3, 0.2),
-                  flat_punch_profile().stick_traction(at(0.5), 0.3, 0.2) / 2),
-              2 * gap);
-    // At the flat's rim as much moment is reached as a flat punch carries without slip.
-    EXPECT_LT(off(profile->moment_share(before_edge(gap)).excess, flat_punch_profile().full_stick()),
-              2 * std::sqrt(gap));
-    EXPECT_LT(profile->moment_share(before_edge(gap * 1e-6)).excess, 1e-3);
-  }
-}
-
 /// 1 - M/M_lim ~ c^3 for a finite pressure p(0), by (8/3) integral_0^c s^3 (-H') ds with -s H' -> p(0); under
 /// a cone with a logarithm; c^(n+2) under a sharper point.
 TEST(Superposition, ReachesTheLimitByItsLaw) {

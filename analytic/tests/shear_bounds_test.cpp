@@ -47,25 +47,6 @@ TEST(ShearBounds, AreHertzsWithoutACapAndWithTheFirstPower) {
   testing::expect_same(*power_of_hertz_profile(1), hertz_profile(), 1, 20 * kEps);
 }
 
-/// A low cap leaves the contact's last part, sqrt(1 - r^2) < cap, alone: the tractions differ by O(cap^2).
-TEST(ShearBounds, AreConstantInTheLimits) {
-  for (const double c : {0.1, 0.5, 0.9}) {
-    const Profile& constant = constant_bound_profile();
-    for (const double cap : {1e-2, 1e-3}) {
-      const auto capped = capped_hertz_profile(cap);
-      EXPECT_LE(relative_error(capped->twist_integral(at(c)) / cap, constant.twist_integral(at(c))),
-                3 * cap * cap);
-      EXPECT_LE(relative_error(capped->load(), cap * pi * (1 - cap * cap / 3)), 20 * kEps);
-    }
-    for (const double n : {1e-3, 1e-5}) {
-      const auto power = power_of_hertz_profile(n);
-      EXPECT_LE(relative_error(power->moment_share(at(c)).excess, constant.moment_share(at(c)).excess),
-                2 * n);
-      EXPECT_LE(relative_error(power->load(), 2 * pi / (n + 2)), 20 * kEps);
-    }
-  }
-}
-
 /// f = 1 - r^2 is elementary: H = (1 - c^2/2) arcosh(1/c) - sqrt(1 - c^2)/2 and -c H' = sqrt(1 - c^2) + c^2
 /// arcosh(1/c).
 TEST(ShearBounds, HaveTheClosedFormsOfTheSquare) {
@@ -95,22 +76,6 @@ TEST(ShearBounds, GoForthAndBackByLoadDeficitAndTwist) {
       EXPECT_LE(relative_error(from_stick_complement(state.stick_complement, *profile).moment_ratio, m),
                 1e-13);
     }
-}
-
-/// Masing's rule: a full cycle loses 8 times the area below the first-loading curve less 4 M phi, here by
-/// quadrature of that curve.
-TEST(ConstantBound, LosesTheEnergyOfMasingsRule) {
-  const Profile& constant = constant_bound_profile();
-  LoadingHistory history(constant);
-  history.load_to(0.8);
-  const CycleState top = history.state();
-  history.load_to(-0.8);
-  history.load_to(0.8);
-  const CycleState again = history.state();
-  EXPECT_LE(relative_error(again.twist, top.twist), 1e-13);
-  const double area =
-      gsl::integral([&](double twist) { return from_twist(twist, constant).moment; }, 0, top.twist, 1e-12);
-  EXPECT_LE(relative_error(again.dissipated - top.dissipated, 8 * area - 4 * top.moment * top.twist), 1e-10);
 }
 
 TEST(ShearBounds, RefuseWhatIsOutOfRange) {

@@ -10,6 +10,7 @@
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/shear_bounds.hpp"
 #include "analytic/tabulated_pressure.hpp"
 
 namespace slipstick::analytic {
@@ -42,7 +43,7 @@ inline double integral_between_roots(const std::function<double(double)>& f, dou
 }
 
 inline const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(),
-                                                      &flat_punch_profile()};
+                                                      &flat_punch_profile(), &constant_bound_profile()};
 
 /// Sampled at equal steps, or (graded) closer and closer towards the edge.
 inline std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,

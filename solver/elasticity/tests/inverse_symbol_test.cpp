@@ -201,31 +201,6 @@ TEST(ConstantField, IsMultipliedByHalfOfTheSmallestFrequency) {
       kSymbolRounding);
 }
 
-/// The inverse symbol turns the displacement by a Gaussian twist back into its traction.
-TEST(InverseSymbol, UndoesTheOperatorAwayFromTheEdge) {
-  const Grid grid{128, 128, 1.0 / 64.0, 1.0 / 64.0};
-  const ArrayXd r2 = cell_x1(grid).square() + cell_x2(grid).square();
-  const ArrayXd bump = (-r2 / 0.02).exp();
-  const ArrayXd near = (r2 < 0.25).cast<double>();
-  const auto error = [&](const BlockKernel& kernel, const ArrayXd& traction) {
-    const auto symbol = make_inverse_symbol(grid, kernel, pair_of(0.3));
-    ArrayXd displacement(traction.size());
-    make_operator(OperatorKind::dcfft, grid, kernel, pair_of(0.3))->apply(traction, displacement);
-    const ArrayXd mask = near.replicate(traction.size() / grid.cells(), 1);
-    return relative_difference(mask * applied(*symbol, displacement), mask * traction);
-  };
-  ArrayXd uniform = ArrayXd::Zero(2 * grid.cells());
-  uniform.head(grid.cells()) = bump;
-  const double twist_error = error(tangential_kernel(), rotation_field(grid) * bump.replicate(2, 1));
-  const double uniform_error = error(tangential_kernel(), uniform);
-  const double normal_error = error(normal_kernel(), bump);
-  // Measured 0.3 %, 1.3 % and 1.7 %: the images of the periodic grid and the mean over cells that the
-  // operator takes. A wrong sign or a missing term makes more than 10 %.
-  EXPECT_LT(twist_error, 0.03);
-  EXPECT_LT(uniform_error, 0.03);
-  EXPECT_LT(normal_error, 0.03);
-}
-
 /// The response of one loaded cell at that cell.
 TEST(InverseSymbolDiagonal, IsThatOfTheOperator) {
   for (const Grid& grid : {Grid{24, 40, 0.5, 0.8}, Grid{28, 10, 1.0, 0.2}}) {

@@ -95,20 +95,6 @@ TEST(Roughness, HasTheSpectrumAskedFor) {
   }
 }
 
-TEST(Roughness, IsTheSameOnEveryMesh) {
-  const Roughness roughness = rough();
-  const Grid coarse = over_a_period(roughness, 30);
-  const Grid fine = over_a_period(roughness, 90);
-  const ArrayXd on_coarse = roughness_heights(roughness, coarse);
-  const ArrayXd on_fine = roughness_heights(roughness, fine);
-  const double highest = on_fine.abs().maxCoeff();
-  for (Index i = 0; i < 30; ++i) {
-    for (Index j = 0; j < 30; ++j) {
-      EXPECT_NEAR(on_coarse[i * 30 + j], on_fine[(3 * i + 1) * 90 + 3 * j + 1], kHeightRounding * highest);
-    }
-  }
-}
-
 /// Waves are orthogonal over a period: what the finer surface has of the coarser one is its long waves.
 TEST(Roughness, KeepsItsLongWavesWhereShorterOnesAreAdded) {
   Roughness roughness = rough();
