@@ -16,6 +16,8 @@ from .verdict import Examined, Judged, percent
 
 #: A mistake explains an error that it lowers to this part, or to the mesh's own.
 _EXPLAINS = 0.35
+#: A mesh of bodies around a fine contact may turn this much further than half-spaces, and have this much shear along the radius.
+_OF_BODIES = 0.02
 #: Ratios of moments and twists count as equal up to this difference.
 _SAME_RATIO = 0.01
 #: Compliances of springs that are tried, over the compliance a/G* of the half-spaces.
@@ -83,7 +85,7 @@ def _other_basis(examined: Examined, request: Request, solve: Solve, wrong: set[
 
 
 def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    if "radial_shear" in wrong:
+    if "radial_shear" in wrong and _number(examined, "radial_shear").value > _OF_BODIES:
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
 
 
@@ -110,6 +112,8 @@ def _missing_rows(examined: Examined, request: Request, solve: Solve, wrong: set
 def _other_units(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     if "normal_load" in wrong and "pressure" not in wrong and "contact_radius" not in wrong:
         load = 1 + _number(examined, "normal_load").value
+        if abs(load - 1) < 3 * _OF_BODIES:
+            return
         yield f"the pressure has the right shape, but is in another unit or carries another load: {load:.4g} of the scene's"
 
 
@@ -211,7 +215,7 @@ def _soft_penalty(examined: Examined, request: Request, solve: Solve, wrong: set
     if twist is None or motion is None or examined.reported is None or "twist" not in wrong or not _may_have_springs(request):
         return
     further = examined.reported / motion.twist - 1
-    if further > twist.allowed:
+    if further > max(twist.allowed, _OF_BODIES):
         compliances, answers = _with_springs(examined, request, solve, _TANGENTIAL)
         twists = [answer.twist / examined.right.twist - 1 for answer in answers]
         if twists and further < max(twists):
