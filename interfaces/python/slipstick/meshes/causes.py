@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import InputError
 from .displacement import KERNELS
 from .field import Array
-from .measures import Bodies
+from .measures import Bodies, Kernels, Motion
 from .right import Right
 from .verdict import Examined, Judged, percent
 
@@ -29,21 +29,20 @@ Request = Mapping[str, Any]
 Solve = Callable[[Mapping[str, Any]], Right]
 
 
-def causes_of(examined: Examined, request: Mapping[str, Any], solve: Solve) -> list[str]:
+def causes_of(examined: Examined, request: Request, solve: Solve) -> list[str]:
     """The causes that explain what is wrong. solve: the right answer with further keys of the scene."""
     wrong = {item.quantity for item in examined.wrong}
-    if no_friction := list(_no_friction(examined, request, solve, wrong)):
+
+    def search(*searches: Callable[[Examined, Request, Solve, set[str]], Iterator[str]]) -> list[str]:
+        return [cause for one in searches for cause in one(examined, request, solve, wrong)]
+
+    if no_friction := search(_no_friction):
         return no_friction
-    found = [cause for search in (_other_basis, _missing_rows, _other_units, _other_contact) for cause in
-             search(examined, request, solve, wrong)]
-    kernel = list(_kernels(examined, request, solve, wrong))
-    if not kernel:
-        found += _pressed_with_friction(examined, request, solve, wrong)
-    for search in (_extrapolated, _other_friction, _other_moment, _lost_history):
-        found += search(examined, request, solve, wrong)
-    twist = list(_other_twist(examined, request, solve, wrong))
-    found += kernel + (twist or ([] if kernel or found else list(_soft_penalty(examined, request, solve, wrong))))
-    return found + ([] if found else list(_directions(examined, request, solve, wrong)))
+    found = search(_other_basis, _missing_rows, _other_units, _other_contact, _extrapolated, _other_friction, _other_moment, _lost_history)
+    found += search(_other_twist) or search(_other_kernel)
+    if not found:
+        found = search(_pressed_with_friction) or search(_directions)
+    return found
 
 
 def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) -> float:
@@ -85,7 +84,14 @@ def _other_basis(examined: Examined, request: Request, solve: Solve, wrong: set[
 
 
 def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    if "radial_shear" in wrong and _number(examined, "radial_shear").value > _OF_BODIES:
+    radial = examined.number("radial_shear")
+    if radial is None or radial.holds or radial.value < _OF_BODIES:
+        return
+    outward = examined.judge.x / np.maximum(np.hypot(*examined.judge.x.T), 1e-300)[:, None]
+    shear = examined.values[:, 1:]
+    without = shear - np.sum(shear * outward, axis=1)[:, None] * outward
+    if _distance(examined, examined.judge.reference, without) < max(2 * _EXPLAINS * _number(examined, "tractions").value,
+                                                                  _number(examined, "tractions").allowed):
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
 
 
@@ -133,19 +139,32 @@ def _other_contact(examined: Examined, request: Request, solve: Solve, wrong: se
 
 
 def _other_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    ratio = examined.judge.friction_ratio(examined.values)
-    friction = examined.number("friction")
+    friction, judge = examined.number("friction"), examined.judge
     if "friction" not in wrong or friction is None or request["friction"]["kind"] != "coulomb":
         return
+    ratio = judge.friction_ratio(examined.values)
     low, high = np.quantile(ratio, [0.25, 0.75])
-    if high - low < _EXPLAINS * abs(friction.value) + friction.right and 1 + friction.value > 1e-3:
-        coefficient = request["friction"]["coefficient"]
+    coefficient = request["friction"]["coefficient"]
+    if "normal_load" in wrong:  # the pressure is wrong
+        return
+    unit = np.log10(max(1 + friction.value, 1e-30)) / 3
+    if abs(unit - round(unit)) < 1e-2 and round(unit):
+        yield f"pressure and shear are in different units: |q|/(mu p) is {1 + friction.value:.4g}"
+    elif high - low < _EXPLAINS * abs(friction.value) + friction.right:
         yield f"the friction coefficient is {coefficient * (1 + friction.value):.4g} in place of {coefficient:g}"
+    else:
+        rows = judge.slips & (examined.values[:, 0] > 0)
+        pressure, shear = np.log(examined.values[rows, 0]), np.log(np.maximum(np.hypot(*examined.values[rows, 1:].T), 1e-300))
+        power, at_one = np.polyfit(pressure, shear, 1)
+        if np.std(shear - power * pressure - at_one) < _EXPLAINS * np.std(shear - pressure):
+            yield f"the shear follows the pressure to the power {power:.2g}: another friction law, or a mean pressure in it"
 
 
 def _other_moment(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    moment = examined.number("moment")
-    if moment is None or "moment" not in wrong or not 0 < (ratio := 1 + moment.value) < 2.2 or request["torsion"] is None:
+    if "moment" not in wrong or request["torsion"] is None:
+        return
+    ratio = examined.judge.loads(examined.values)[1] / examined.judge.loads(examined.judge.reference)[1]  # both on this mesh
+    if not 0.01 < ratio < 2.2:
         return
     (key, value), = request["torsion"].items()
     if key == "load.twist":
@@ -209,51 +228,65 @@ def _with_springs(examined: Examined, request: Request, solve: Solve, key: str) 
     return unit * _SPRINGS[:len(answers)], answers
 
 
-def _soft_penalty(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    """Soft tangential springs turn the bodies further than the tractions do."""
-    twist, motion = examined.number("twist"), examined.motion
-    if twist is None or motion is None or examined.reported is None or "twist" not in wrong or not _may_have_springs(request):
-        return
-    further = examined.reported / motion.twist - 1
-    if further > max(twist.allowed, _OF_BODIES):
-        compliances, answers = _with_springs(examined, request, solve, _TANGENTIAL)
-        twists = [answer.twist / examined.right.twist - 1 for answer in answers]
-        if twists and further < max(twists):
-            slope = 1 / np.interp(further, [0, *twists], [1e-99, *compliances])
-            yield (f"the penalty lets the contact slip where it should stick: a stick slope of about {slope:.1g} Pa/m turns the bodies "
-                   f"{percent(further)} further than the tractions do")
-
-
-def _kernels(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
-    """Tries wrong kernels: the stick area of a solver moves rigidly under the kernel that it has."""
-    motion, scatter = examined.motion, examined.number("stick_motion")
-    if motion is None or scatter is None or "stick_motion" not in wrong:
+def _other_kernel(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """Tries wrong kernels, and springs: with the kernel that a solver has its stick area moves rigidly, by the twist that it reports."""
+    motion, scatter, twist = examined.motion, examined.number("stick_motion"), examined.number("twist")
+    if motion is None or scatter is None or not wrong & {"stick_motion", "twist"}:
         return
     judge = examined.judge
     kernels = judge.kernels([examined.values], KERNELS)[0]
     assert judge.bodies is not None
-
-    def scatter_with(bodies: Bodies, **mistake: Any) -> float:
-        u = kernels.displacement(bodies, **mistake)
-        return judge.rigid(kernels, u).scatter
+    bodies = judge.bodies
 
     def with_poisson(ratio: float) -> Bodies:
         return Bodies.of(*({**request[name], "poisson_ratio": ratio} for name in ("upper", "lower")), bodies.spring)
 
-    bodies = judge.bodies
-    tried = {"the cross kernel K12, odd in x1 and in x2, is mirrored as an even function": (bodies, {"even": True}),
-             "the cross kernel K12 is missing": (bodies, {"cross": 0.0}),
-             "the cross kernel K12 has the wrong sign": (bodies, {"cross": -1.0}),
-             "K11 and K22 are exchanged": (bodies, {"swapped": True}),
-             **{f"Poisson's ratio is {ratio:g}": (with_poisson(ratio), {}) for ratio in (0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5)}}
+    tried: dict[str, tuple[Bodies, dict[str, Any]]] = {
+        "the cross kernel K12, odd in x1 and in x2, is mirrored as an even function": (bodies, {"even": True}),
+        "the cross kernel K12 is missing": (bodies, {"cross": 0.0}), "the cross kernel K12 has the wrong sign": (bodies, {"cross": -1.0}),
+        "K11 and K22 are exchanged": (bodies, {"swapped": True}),
+        **{f"Poisson's ratio is {ratio:g}": (with_poisson(ratio), {}) for ratio in (0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5)}}
     if abs(bodies.coupled) > 1e-3 * bodies.normal:
-        tried["the coupling K13 and K23 of normal and tangential tractions is missing"] = replace(bodies, coupled=0.0), {}
-        tried["the coupling K13 and K23 of normal and tangential tractions has the wrong sign"] = (
-            replace(bodies, coupled=-bodies.coupled), {})
-    scatters = {name: scatter_with(kind, **mistake) for name, (kind, mistake) in tried.items()}
-    best = min(scatters, key=lambda name: scatters[name])
-    if scatters[best] < _EXPLAINS * scatter.value:
-        yield best
+        for name, factor in (("is missing", 0.0), ("has the wrong sign", -1.0)):
+            tried[f"the coupling K13 and K23 of normal and tangential tractions {name}"] = (
+                replace(bodies, coupled=factor * bodies.coupled), {})
+    if _may_have_springs(request) and (spring := _fitted_spring(examined, kernels)) > 0:
+        tried[f"the penalty lets the contact slip where it should stick: its stick slope is about {1 / spring:.1g} Pa/m"] = (
+            replace(bodies, spring=spring), {})
+    motions = {name: judge.rigid(kernels, kernels.displacement(other, **mistake)) for name, (other, mistake) in tried.items()}
+    held = examined.right.twist - examined.right_twist
+
+    def agrees(other: Motion) -> bool:
+        return twist is None or examined.reported is None or abs(examined.reported / (other.twist - held) - 1) <= twist.allowed
+
+    limit = max(_EXPLAINS * abs(scatter.value), scatter.allowed) if twist is not None else _EXPLAINS * abs(scatter.value)
+    fitting = {name: other.scatter for name, other in motions.items() if other.scatter <= limit and agrees(other)}
+    if fitting and not (scatter.holds and agrees(motion)):
+        best = min(fitting.values())
+        yield " or ".join(name for name, size in fitting.items() if size <= 1.2 * best)
+
+
+def _fitted_spring(examined: Examined, kernels: Kernels) -> float:
+    """The compliance of tangential springs, m/Pa, with which the stick area moves rigidly, by the reported twist if there is one; zero
+    if they hardly turn the bodies."""
+    judge = examined.judge
+    assert judge.bodies is not None and examined.motion is not None
+    at = kernels.sticks
+    x, own, u = kernels.places[at], kernels.own[at], kernels.displacement(judge.bodies)[at]
+    zero, one = np.zeros(len(x)), np.ones(len(x))
+    turn = np.concatenate([-x[:, 1], x[:, 0]])
+    columns = [np.concatenate([one, zero]), np.concatenate([zero, one]), -own.T.ravel()]
+    wanted = u.T.ravel()
+    if examined.reported is None:
+        columns.append(turn)
+    else:
+        twist = examined.reported + examined.right.twist - examined.right_twist
+        if twist / examined.motion.twist - 1 < _OF_BODIES:
+            return 0.0
+        wanted = wanted - twist * turn
+    scale = [np.abs(column).max() for column in columns]
+    solution = np.linalg.lstsq(np.column_stack([column / size for column, size in zip(columns, scale)]), wanted, rcond=None)[0]
+    return float(solution[2] / scale[2])
 
 
 def _directions(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:

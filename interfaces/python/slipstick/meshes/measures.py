@@ -169,8 +169,8 @@ class Judge:
         d1, d2, twist = np.linalg.lstsq(matrix * both[:, None], u.T.ravel() * both, rcond=None)[0]
         motion = Motion(float(twist), np.array([d1, d2]), 0.0)
         rigid = motion.at(places)
-        scatter = np.sqrt(np.sum(weights[:, None]**2 * (u - rigid)**2) / np.sum(weights[:, None]**2 * rigid**2))
-        return Motion(motion.twist, motion.displacement, float(scatter))
+        off, size = (np.sum(weights[:, None]**2 * part**2) for part in (u - rigid, rigid))
+        return Motion(motion.twist, motion.displacement, float(np.sqrt(off / size)) if size > 0 else np.inf)
 
     def slip_angle(self, kernels: Kernels, motion: Motion) -> Optional[tuple[float, float]]:
         """The mean angle between slip and traction, weighted with the slip, degrees; and the angle, degrees, by which slip may be off

@@ -129,7 +129,7 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     kernels: list[Any] = [None] * len(fields) if bodies is None else judge.kernels(fields)
     found, *measured = [judge.measure(*each) for each in zip(fields, kernels)]
     worst = {name: max(abs(each.get(name, 0.0)) for each in measured) for name in _FLOORS}
-    found["coverage"] = _uncovered(patches, right)
+    found["coverage"] = max(_uncovered(patches, right), 0.0 if field.area is None else _without_area(patches, reference))
     right_twist = right.twist - held
     if reported is not None:
         found["twist"] = reported / right_twist - 1
@@ -147,13 +147,11 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
 
 
 def _carrying(judge: Judge, values: Array) -> Array:
-    """The right answer of another method on the mesh, scaled to the loads of the right answer: a program controls its loads."""
-    (load, moment, force), right = judge.loads(values), judge.right
-    along = right.force @ force
-    shear = right.moment / moment if abs(along) <= abs(moment) / right.contact_radius * np.hypot(*right.force) else (
-        right.force @ right.force / along)
-    return values * np.array([right.normal_load / load, shear, shear])
-
+    """The right answer of another method on the mesh, scaled to the loads of the reference: a program controls its loads."""
+    (load, moment, force), (right_load, right_moment, right_force) = judge.loads(values), judge.loads(judge.reference)
+    by_force = np.hypot(*right_force) * judge.right.contact_radius > abs(right_moment)
+    shear = (right_force @ right_force) / (right_force @ force) if by_force else right_moment / moment
+    return values * np.array([right_load / load, shear, shear])
 
 
 def _uncovered(patches: Patches, right: Right) -> float:
@@ -165,6 +163,13 @@ def _uncovered(patches: Patches, right: Right) -> float:
     np.maximum.at(reach, patches.rows, edges[:, None])
     away, nearest = KDTree(patches.points).query(places)
     return float(pressure @ (away > reach[nearest]) / pressure.sum())
+
+
+def _without_area(patches: Patches, reference: Array) -> float:
+    """The part of the contact's triangles that the given areas leave out."""
+    loaded = reference[:, 0] > 0
+    inside = patches.areas[loaded[patches.rows].all(axis=1)].sum()
+    return float(1 - patches.weights @ loaded / inside) if inside > 0 else 0.0
 
 
 def _disc() -> Array:
