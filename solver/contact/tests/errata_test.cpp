@@ -16,45 +16,30 @@ class PrintedRotation : public testing::Test {
   const Grid grid_{24, 24, 0.1, 0.1};
   const ArrayXd x1_ = cell_x1(grid_);
   const ArrayXd x2_ = cell_x2(grid_);
-  const Index cells_ = grid_.cells();
   const ArrayXd rotation_ = rotation_field(grid_);
   // Eqs. (8), (9), (13)-(16), (24), (25) as printed: (x2, x1).
-  const ArrayXd printed_ = [this] {
-    ArrayXd field(2 * cells_);
-    field << x2_, x1_;
-    return field;
-  }();
-  // A torsional traction field, any function of the radius times (-x2, x1).
-  const ArrayXd torsion_ = [this] {
-    const ArrayXd profile = (-(x1_.square() + x2_.square())).exp();
-    return (profile.replicate(2, 1) * rotation_).eval();
-  }();
+  const ArrayXd printed_ = (ArrayXd(2 * grid_.cells()) << x2_, x1_).finished();
 };
 
+/// The gradient of a linear field: a rotation's is antisymmetric, a shear's symmetric.
 TEST_F(PrintedRotation, IsAShearThatMovesNoPointAsARotationDoes) {
-  // Forward differences of a linear field are its gradient: a rotation is antisymmetric, a shear symmetric.
-  const auto gradient = [&](const ArrayXd& field, int component, int along) {
-    const Index here = cells_ / 2;
-    const Index next = along == 1 ? here + grid_.n2 : here + 1;
-    const auto part = field.segment((component - 1) * cells_, cells_);
-    return (part[next] - part[here]) / 0.1;
+  const Index here = grid_.cells() / 2;
+  const auto gradient_12 = [&](const ArrayXd& u) { return (u[here + 1] - u[here]) / 0.1; };
+  const auto gradient_21 = [&](const ArrayXd& u) {
+    return (u[grid_.cells() + here + grid_.n2] - u[grid_.cells() + here]) / 0.1;
   };
-  EXPECT_NEAR(gradient(rotation_, 1, 2), -gradient(rotation_, 2, 1), kRoundingOfErrata);
-  EXPECT_NEAR(gradient(printed_, 1, 2), gradient(printed_, 2, 1), kRoundingOfErrata);
-  EXPECT_NEAR(gradient(printed_, 1, 2), 1.0, kRoundingOfErrata);
+  EXPECT_NEAR(gradient_12(rotation_), -gradient_21(rotation_), kRoundingOfErrata);
+  EXPECT_NEAR(gradient_12(printed_), gradient_21(printed_), kRoundingOfErrata);
+  EXPECT_NEAR(gradient_12(printed_), 1.0, kRoundingOfErrata);
 }
 
-TEST_F(PrintedRotation, InEquation9FindsNoMomentInATorsionalTraction) {
-  const double moment = (torsion_ * rotation_).sum();
+/// Eq. (9) of a torsional traction, any function of the radius times (-x2, x1); Eq. (16) of a rigid rotation.
+TEST_F(PrintedRotation, FindsNoMomentInATorsionalTractionAndNoTwistInARotation) {
+  const ArrayXd torsion = (-(x1_.square() + x2_.square())).exp().replicate(2, 1) * rotation_;
+  const double moment = (torsion * rotation_).sum();
   EXPECT_GT(moment, 1.0);
-  EXPECT_NEAR((torsion_ * printed_).sum() / moment, 0.0, kRoundingOfErrata);
-}
-
-TEST_F(PrintedRotation, InEquation16FindsNoTwistInARigidRotation) {
-  constexpr double phi = 0.7;
-  const ArrayXd u = phi * rotation_;
-  EXPECT_NEAR((u * rotation_).sum() / rotation_.square().sum(), phi, kRoundingOfErrata);
-  EXPECT_NEAR((u * printed_).sum() / printed_.square().sum(), 0.0, kRoundingOfErrata);
+  EXPECT_NEAR((torsion * printed_).sum() / moment, 0.0, kRoundingOfErrata);
+  EXPECT_NEAR((rotation_ * printed_).sum() / printed_.square().sum(), 0.0, kRoundingOfErrata);
 }
 
 // Eqs. (16) and (25) as printed lack the sum in the denominator: what they give depends on the cell, and

@@ -60,42 +60,5 @@ TEST(Coefficients, AreFoundAtTheEndsOfTheRange) {
   }
 }
 
-TEST(SmallQr, HasOrthonormalColumnsAndATriangle) {
-  for (Eigen::Index columns = 1; columns <= 3; ++columns) {
-    const CoefficientMatrix matrix = random_matrix(3, columns);
-    const auto [q, r] = small_qr(matrix);
-    EXPECT_LE((q.transpose() * q - CoefficientMatrix::Identity(columns, columns)).norm(), kFewRoundings);
-    EXPECT_LE((q * r - matrix).norm(), kFewRoundings);
-    EXPECT_TRUE(r.isUpperTriangular(0.0));
-  }
-}
-
-TEST(OrthonormalBasis, BeginsAlongTheVector) {
-  for (Eigen::Index n = 1; n <= kMaxConditions; ++n) {
-    const Coefficients vector = Coefficients::Random(n);
-    const CoefficientMatrix basis = orthonormal_basis(vector);
-    EXPECT_LE((basis.transpose() * basis - CoefficientMatrix::Identity(n, n)).norm(), kFewRoundings) << n;
-    EXPECT_NEAR(std::abs(basis.col(0).dot(vector)), vector.norm(), kFewRoundings) << n;
-  }
-}
-
-TEST(LeastSquares, LeaveWhatNoColumnReaches) {
-  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(20, 6);
-  const Eigen::VectorXd right = Eigen::VectorXd::Random(20);
-  const Eigen::VectorXd left = right - matrix * least_squares(matrix, right);
-  EXPECT_LE((matrix.transpose() * left).norm(), 1e-13);
-}
-
-// Penrose's four conditions have one solution.
-TEST(PseudoInverse, MeetsPenrosesConditions) {
-  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(9, 3);
-  const Eigen::MatrixXd inverse = pseudo_inverse(matrix);
-  const Eigen::MatrixXd onto = matrix * inverse;
-  EXPECT_LE((onto * matrix - matrix).norm(), kFewRoundings);
-  EXPECT_LE((inverse * onto - inverse).norm(), kFewRoundings);
-  EXPECT_LE((onto - onto.transpose()).norm(), kFewRoundings);
-  EXPECT_LE((inverse * matrix - Eigen::MatrixXd::Identity(3, 3)).norm(), kFewRoundings);
-}
-
 }  // namespace
 }  // namespace slipstick::solver
