@@ -159,41 +159,6 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   EXPECT_LT(radial_part(by_paper_method(scene)), 1e-8);
 }
 
-// --- cost ---
-
-TEST(Applications, AreOneAnIterationAndOneMoreWhereTheStickAreaChanged) {
-  for (const double moment_ratio : {0.1, 0.5, 0.9}) {
-    const Bench bench(64);
-    const long before = bench.op->applications();
-    const TangentialSolution solution = bench.twist_by_moment(moment_ratio, 1e-8);
-    const long count = bench.op->applications() - before;
-    EXPECT_GE(count, solution.iterations + 2);  // the first guess and the final displacements
-    EXPECT_LT(count, 2 * solution.iterations);
-  }
-  // A bonded contact does not slip: one application an iteration, and two more.
-  Bench bonded(32);
-  bonded.bound = (bonded.bound > 0.0).select(ArrayXd::Constant(bonded.bound.size(), 1e6), 0.0);
-  const long before = bonded.op->applications();
-  const TangentialSolution solution =
-      solve_by_paper_method(*bonded.op, under_moment(bonded.bound, 1.0), to_tolerance(1e-12));
-  ASSERT_EQ(solution.status, Status::converged);
-  EXPECT_EQ((solution.stick > 0.0).count(), (bonded.bound > 0.0).count());
-  EXPECT_LE(solution.iterations, 49);  // before the first refresh
-  EXPECT_EQ(bonded.op->applications() - before, solution.iterations + 2);
-}
-
-TEST(Progress, IsCalledWithFallingChanges) {
-  const Bench bench(64);
-  std::vector<std::pair<int, double>> calls;
-  PaperOptions options = to_tolerance(1e-10);
-  options.progress = [&](int i, double change) { calls.emplace_back(i, change); };
-  const TangentialSolution solution =
-      solve_by_paper_method(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
-  ASSERT_GE(calls.size(), 1U);
-  EXPECT_GT(calls.front().second, 1e-10);
-  EXPECT_LE(calls.back().first, solution.iterations);
-}
-
 TEST(Result, ReportsWhatItsTractionsCauseNotWhatWasCarriedAlong) {
   const Bench bench(32);
   const TangentialSolution solution = bench.twist_by_moment(0.5);
@@ -421,17 +386,6 @@ TEST(LooseTolerance, HoldsTheFrictionBoundAsWell) {
       }
     }
   }
-}
-
-TEST(BadTangentialProblem, OfASceneSaysTheLimitInItsUnits) {
-  Scene scene = paper_scene(32, 0.5);
-  const double limit = by_paper_method(scene).moment_limit;
-  scene.steps[0].torsion = Moment{limit * (1.0 + 1e-12)};
-  EXPECT_THAT(complaint([&] { by_paper_method(scene); }),
-              AllOf(HasSubstr("paper.toml: load.moment = "),
-                    HasSubstr(fmt::format("below {:.10g}", limit).substr(0, 14))));
-  scene.steps[0].torsion = Moment{0.5 * limit};
-  EXPECT_NEAR(by_paper_method(scene).moment / limit, 0.5, kRounding);
 }
 
 }  // namespace

@@ -128,19 +128,6 @@ TYPED_TEST(Admissible, ProjectionIsTheNearestPoint) {
   }
 }
 
-TYPED_TEST(Admissible, ProjectionLeavesAdmissibleFieldsAlone) {
-  const ArrayXd shape = this->shape(3);
-  const TypeParam set(shape);
-  Random random(4);
-  const ArrayXd p = projected(set, 2.0 * random.field(size_of<TypeParam>()));
-  EXPECT_LE((projected(set, p) - p).abs().maxCoeff(), 1e-15);
-  EXPECT_TRUE((projected(set, ArrayXd(0.5 * p)) == 0.5 * p).all());
-  for (Index i = 0; i < kCells; ++i) {
-    if (shape[i] != 0.0) continue;
-    for (Index c = 0; c < TypeParam::kComponents; ++c) EXPECT_EQ(p[i + c * kCells], 0.0);
-  }
-}
-
 const MotionField kMotion(kGrid, 0.5, -2.0, 1.5);
 
 /// As fields that are kept: exact in single precision too.

@@ -286,65 +286,7 @@ TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
   EXPECT_LE((preconditioner - expected).cwiseAbs().maxCoeff(), 1e-13 * largest);
 }
 
-// --- without a contact ---
-
-struct DenseMap {
-  MatrixXd matrix;
-  Sweep all = Sweep(ArrayXd::Ones(matrix.rows()));
-
-  const Sweep& cells() const { return all; }
-  void transform(const ArrayXd& x, ArrayXd& y) const { y = (matrix * x.matrix()).array(); }
-  void store(Index, Index, const ArrayXd&, ArrayXd&) const {}
-  void load(Index first, Index last, const ArrayXd& r, ArrayXd& z) const {
-    z.segment(first, last - first) = r.segment(first, last - first);
-  }
-  void transform(ArrayXd& z) const { z = (matrix * z.matrix()).array(); }
-  void store(Index first, Index last, const ArrayXd&, const ArrayXd& z, ArrayXd& y) const {
-    y.segment(first, last - first) = z.segment(first, last - first);
-  }
-  void project(Index, Index, ArrayXd&) const {}
-};
-
-/// In as many iterations as there are unknowns, with any positive definite preconditioner, from any start,
-/// whose values of the constraints are kept.
-TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
-  constexpr Index kSize = 12;
-  const auto positive = [](unsigned seed) {
-    const MatrixXd random = random_field(kSize * kSize, seed).matrix().reshaped(kSize, kSize);
-    return MatrixXd(random * random.transpose() + MatrixXd::Identity(kSize, kSize));
-  };
-  DenseMap map{positive(1)};
-  DenseMap preconditioner{positive(2)};
-  const ArrayXd right = random_field(kSize, 3);
-  const ArrayXd c = random_field(kSize, 4);
-  const ArrayXd start = random_field(kSize, 5);
-  std::vector<CgTangent> storage(1, CgTangent(kSize));
-  CgConstraints<FieldCondition> constraints{std::span(storage)};
-  const FieldCondition condition{c};
-  ArrayXd d(kSize), Ad(kSize), y(kSize);
-  const CgWorkspace work{d, Ad, y};
-  ASSERT_TRUE(constraints.prepare(preconditioner, std::array{&condition}, work.d, work.y));
-  ArrayXd x = start;
-  ArrayXd r = right - (map.matrix * start.matrix()).array();
-  const CgSummary summary = projected_cg(map, preconditioner, constraints, r, {1e-12, 4 * kSize}, work, x);
-  EXPECT_EQ(summary.status, CgStatus::reduced);
-  EXPECT_LE(summary.iterations, 2 * kSize);
-
-  MatrixXd saddle = MatrixXd::Zero(kSize + 1, kSize + 1);
-  saddle.topLeftCorner(kSize, kSize) = map.matrix;
-  saddle.topRightCorner(kSize, 1) = -c.matrix();
-  saddle.bottomLeftCorner(1, kSize) = c.matrix().transpose();
-  VectorXd rights(kSize + 1);
-  rights << right.matrix(), (c * start).sum();
-  const VectorXd exact = dense_solution(saddle, rights).head(kSize);
-  EXPECT_LE((x.matrix() - exact).norm(), 1e-10 * exact.norm());
-
-  x = start;
-  r = right - (map.matrix * start.matrix()).array();
-  const CgSummary stopped = projected_cg(map, preconditioner, constraints, r, {1e-12, 2}, work, x);
-  EXPECT_EQ(stopped.status, CgStatus::iterations);
-  EXPECT_NEAR((c * x).sum(), (c * start).sum(), 1e-12 * c.matrix().norm() * x.matrix().norm());
-}
+// --- nothing to solve ---
 
 TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
   CgBench b({4, 4, 1.0, 1.0}, true, 8);

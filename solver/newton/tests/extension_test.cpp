@@ -157,19 +157,5 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   EXPECT_NEAR(((after - stays * before) * alone).sum(), ((1.0 - stays) * before * x).sum(), 1e-12);
 }
 
-/// Positive pressures on free cells stay as they are.
-TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
-  const Grid grid{9, 14, 1.0, 1.0};
-  const ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.0).cast<double>();
-  Packing packing(grid, Sweep(grid, free), 1);
-  const ArrayXd before = packing.packed(ArrayXd::Random(grid.cells()) + 1.5);
-  ArrayXd after = before;
-  ArrayXd mask(before.size());
-  ArrayXd leaves(before.size());
-  Extension extension(grid, 1);
-  extension.redistribute(packing, ArrayXd::Ones(before.size()), after, mask, leaves);
-  EXPECT_TRUE((after == before).all());
-}
-
 }  // namespace
 }  // namespace slipstick::solver

@@ -197,19 +197,6 @@ TEST_P(Balance, KnowsWhatIsNotANumber) {
   }
 }
 
-TEST_P(Balance, AllocatesNothing) {
-  Body body(GetParam(), 61);
-  const FrictionDiscs discs(body.grid, body.bound);
-  const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
-  const LoadBalance balance(discs, body.conditions(body.loads(0.9)));
-  for (const double far : {0.0, 1e6}) {
-    Coefficients x = Coefficients::Constant(GetParam(), far);
-    const long before = allocations();
-    ASSERT_TRUE(balance.solve(y, x));
-    EXPECT_EQ(allocations(), before);
-  }
-}
-
 TEST(BalanceOfNothing, IsMet) {
   Body body(1, 71);
   const FrictionDiscs discs(body.grid, body.bound);
