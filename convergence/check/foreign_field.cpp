@@ -28,8 +28,10 @@ constexpr double kMaxCellsPerRow = 100.0;
 constexpr double kQuickGridCells = 65536.0;  // judged within seconds
 /// Length of a cell over its width. No contact is so slender: a larger ratio is a mistake in a column.
 constexpr double kMaxSlender = 1000.0;
-/// Positions are those of a mesh where more than this part of them lies on no regular grid.
+/// Positions are those of a mesh where more than this part of them lies off a regular grid by more than this
+/// part of a cell: one row that is astray moves the fitted grid by less.
 constexpr double kMaxOff = 0.1;
+constexpr double kClearlyOff = 0.1;
 /// Rows are taken to be astray where at most this part of all rows lies beyond the widest gap,
 constexpr double kMaxAstray = 0.02;
 /// and that gap is wider than this multiple of the width of all rows of cells side by side,
@@ -49,6 +51,16 @@ struct Axis {
 
   double place(double x) const { return (x - first) / spacing; }
   double centre() const { return first + 0.5 * static_cast<double>(count - 1) * spacing; }
+
+  /// How far values are off the nearest places, and how far they may be, in steps.
+  ArrayXd off(const ArrayXd& x) const {
+    const ArrayXd place = (x - first) / spacing;
+    return (place - place.round()).abs();
+  }
+  double accepted(const ArrayXd& x) const {
+    const double rounding = find_precision(x).rounding(x).maxCoeff() / spacing;
+    return std::clamp(2.0 * rounding, kOffCentre, kDistinguishesCells);
+  }
 };
 
 /// Each place once, in order; a place is the mean of the values that differ by no more than `same`.
@@ -109,42 +121,35 @@ std::optional<Index> row_astray(const ArrayXd& values, double distance) {
   return above ? *std::min_element(middle, rows.end()) : *std::min_element(rows.begin(), middle);
 }
 
+/// The first of few rows that lie far beyond all others.
+std::optional<Index> row_far_away(const ArrayXd& values, const std::vector<double>& places) {
+  const double step = places.size() < kMinRowsAcross ? 0.0 : median_step(places);
+  return row_astray(values, kTimesAcross * static_cast<double>(places.size()) * step);
+}
+
 Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
   const double range = x.values.maxCoeff() - x.values.minCoeff();
   const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
-  const bool few = places.size() < kMinRowsAcross;
-  const double step = few ? 0.0 : median_step(places);
-  if (const auto far = row_astray(x.values, kTimesAcross * static_cast<double>(places.size()) * step)) {
+  if (const auto far = row_far_away(x.values, places)) {
     throw InputError(file.string(),
                      fmt::format("row {}: {} = {} is far away from the others; allowed: one row for each "
                                  "cell of the contact, on one regular grid",
                                  *far + 1, x.name, x.values[*far]));
   }
-  if (few) {
+  if (places.size() < kMinRowsAcross) {
     throw InputError(file.string(),
                      fmt::format("column {}: {} different values; allowed: at least {}, one for each row "
                                  "of cells across the contact",
                                  x.name, places.size(), kMinRowsAcross));
   }
   const Axis axis = fit_axis(places);
-  const ArrayXd place = (x.values - axis.first) / axis.spacing;
   Index worst = 0;
-  const double off = (place - place.round()).abs().maxCoeff(&worst);
-  const double rounding = find_precision(x.values).rounding(x.values).maxCoeff() / axis.spacing;
-  if (off <= std::clamp(2.0 * rounding, kOffCentre, kDistinguishesCells)) return axis;
+  if (axis.off(x.values).maxCoeff(&worst) <= axis.accepted(x.values)) return axis;
   worst = row_astray(x.values, kStepsAway * axis.spacing).value_or(worst);
   throw InputError(file.string(),
                    fmt::format("row {}: {} = {} is on no regular grid; allowed: about {:.4g} plus a whole "
                                "number of steps of {:.4g}, as most rows have it",
                                worst + 1, x.name, x.values[worst], axis.first, axis.spacing));
-}
-
-/// The part of the rows that lie further from the places of an axis than find_axis() accepts.
-double part_off(const solver::Column& x, const Axis& axis) {
-  const ArrayXd place = (x.values - axis.first) / axis.spacing;
-  const double rounding = find_precision(x.values).rounding(x.values).maxCoeff() / axis.spacing;
-  const double accepted = std::clamp(2.0 * rounding, kOffCentre, kDistinguishesCells);
-  return ((place - place.round()).abs() > accepted).cast<double>().mean();
 }
 
 /// Refuses a grid with too many or too slender cells, before memory is taken for each of them.
@@ -199,9 +204,10 @@ bool lies_on_grid(const solver::Column& x1, const solver::Column& x2) {
     if (x.values.hasNaN()) return true;
     const double range = x.values.maxCoeff() - x.values.minCoeff();
     const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
-    if (places.size() < kMinRowsAcross) return true;
+    if (places.size() < kMinRowsAcross || row_far_away(x.values, places)) return true;
     const Axis axis = fit_axis(places);
-    if (part_off(x, axis) > kMaxOff) return false;
+    const double clearly = std::max(axis.accepted(x.values), kClearlyOff);
+    if ((axis.off(x.values) > clearly).cast<double>().mean() > kMaxOff) return false;
     cells *= static_cast<double>(axis.count);
   }
   return cells <= std::max(kQuickGridCells, kMaxCellsPerRow * static_cast<double>(x1.values.size()));
