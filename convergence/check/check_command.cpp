@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/check/check.hpp"
-#include "convergence/check/loops/loop_record.hpp"
-#include "convergence/check/loops/loop_request.hpp"
+#include "convergence/check/loop_request.hpp"
 #include "convergence/check/mesh_request.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/package_module.hpp"

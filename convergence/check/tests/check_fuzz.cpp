@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/check/check.hpp"
-#include "convergence/check/loops/loop_record.hpp"
-#include "convergence/check/loops/loop_request.hpp"
+#include "convergence/check/loop_request.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 namespace {

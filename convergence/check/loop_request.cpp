@@ -1,4 +1,4 @@
-#include "convergence/check/loops/loop_record.hpp"
+#include "convergence/check/loop_request.hpp"
 
 #include <fmt/ranges.h>
 
@@ -7,6 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analytic/axisymmetric.hpp"
+#include "convergence/oracle/exact_theories.hpp"
+#include "convergence/oracle/law_contact.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -24,6 +27,27 @@ const std::vector<std::string> kForceNames{"force", "tangential_force"};
 const std::vector<std::string> kDisplacementNames{"displacement"};
 const std::vector<std::string> kTimeNames{"time", "t"};
 const std::vector<std::string> kLoadNames{"normal_load", "normal_force"};
+
+/// Rows of a loop: fewer do not show its noise.
+constexpr std::size_t kMinLoopRows = 20;
+
+/// Moment and rotation, or tangential force and displacement, row by row in the units of the program that
+/// wrote them.
+struct LoopRecord {
+  std::filesystem::path file;
+  bool of_force;
+  std::vector<double> time;  ///< empty: not given
+  std::vector<double> load;
+  std::vector<double> motion;
+  std::vector<double> normal_load;  ///< empty: not given
+};
+
+/// Consecutive rows under one normal load.
+struct LoadRows {
+  std::size_t from;
+  std::size_t to;
+  double normal_load;  ///< N
+};
 
 /// The first of these names that is present; empty: none.
 std::string present(const std::vector<std::string>& there, const std::vector<std::string>& names) {
@@ -138,6 +162,90 @@ void require_sound(const LoopRecord& loop) {
   }
 }
 
+/// Reads a CSV table, or JSON lists of the same names.
+LoopRecord read_loop(const std::filesystem::path& file) {
+  solver::require_input_file(file, solver::kLargestTextTable, "a loop (CSV or JSON)");
+  LoopRecord loop =
+      file.extension() == ".json"
+          ? read_json_loop(file)
+          : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
+  require_sound(loop);
+  return loop;
+}
+
+/// The rows under each normal load, all under the scene's load if the record names none.
+std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
+  constexpr double kSameLoad = 0.02;  // relative difference of rows under one load
+  if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
+  std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
+  for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
+    if (std::abs(loop.normal_load[row] / groups.back().normal_load - 1.0) > kSameLoad) {
+      groups.push_back({row, row, loop.normal_load[row]});
+    }
+    groups.back().to = row + 1;
+  }
+  for (const LoadRows& group : groups) {
+    if (group.to - group.from >= kMinLoopRows) continue;
+    throw InputError(
+        loop.file.string(),
+        fmt::format(
+            "rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
+            "load of its own for at least {} rows",
+            group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
+  }
+  return groups;
+}
+
+solver::Scene under(const solver::Scene& scene, double normal_load) {
+  solver::Scene other = scene;
+  other.steps.front().normal = normal_load;
+  return other;
+}
+
+/// d ln(contact radius)/d ln(normal load).
+double radius_exponent(const solver::Scene& scene, const LawUnits& units) {
+  constexpr double kMore = 1.001;
+  const double larger = law_contact(under(scene, kMore * units.normal_load)).units->contact_radius;
+  return std::log(larger / units.contact_radius) / std::log(kMore);
+}
+
+double gap_exponent(const solver::Scene& scene) {
+  const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
+  if (shape && shape->gap_exponent) return *shape->gap_exponent;
+  throw InputError(scene.source.string(),
+                   "its contact does not stay similar to itself as the load changes: there is no law "
+                   "of forces; allowed: sphere, cone, flat_punch, power");
+}
+
+/// The contact under a normal load, with the numbers of both kinds of loops: the load's unit is the limit,
+/// and the motion's mu W/(G a^2) in torsion; under a force mu W/(G_t a), with 1/G_t = sum of (2 - nu)/(2 G).
+/// one_body: the stiffness with the other body rigid, over the pair's. A force has Cattaneo's and Mindlin's
+/// law, which is exact for Poisson's ratios of 0 and otherwise neglects slip across the force.
+Json contact_json(const solver::Scene& scene, double normal_load, bool of_force) {
+  const solver::Scene loaded = under(scene, normal_load);
+  const LawContact contact = law_contact(loaded);
+  const LawUnits& units = *contact.units;
+  const auto compliance = [&](const solver::Material& body) {
+    const double shear = (1.0 + body.poisson_ratio) / body.young_modulus;
+    return of_force ? (2.0 - body.poisson_ratio) * shear : shear;
+  };
+  const double pair = compliance(scene.upper) + compliance(scene.lower);
+  Json json{{"normal_load", normal_load},
+            {"radius_exponent", radius_exponent(loaded, units)},
+            {"one_body", {pair / compliance(scene.upper), pair / compliance(scene.lower)}}};
+  if (of_force) {
+    const double limit = units.friction * normal_load;
+    json.update({{"limit", limit},
+                 {"motion_unit", limit * pair / units.contact_radius},
+                 {"gap", gap_exponent(scene)}});
+    return json;
+  }
+  json.update({{"limit", contact.profile->moment_limit() * units.moment()},
+               {"motion_unit", units.rotation()},
+               {"profile", contact.profile->name()}});
+  return json;
+}
+
 }  // namespace
 
 bool is_loop_file(const std::filesystem::path& file) {
@@ -151,36 +259,23 @@ bool is_loop_file(const std::filesystem::path& file) {
   return !is_field && (of_torsion || is_of_force(names));
 }
 
-LoopRecord read_loop(const std::filesystem::path& file) {
-  solver::require_input_file(file, solver::kLargestTextTable, "a loop (CSV or JSON)");
-  LoopRecord loop =
-      file.extension() == ".json"
-          ? read_json_loop(file)
-          : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
-  require_sound(loop);
-  return loop;
-}
-
-std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
-  constexpr double kSameLoad = 0.02;  // relative difference of rows under one load
-  if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
-  std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
-  for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
-    if (std::abs(loop.normal_load[row] / groups.back().normal_load - 1.0) > kSameLoad) {
-      groups.push_back({row, row, loop.normal_load[row]});
-    }
-    groups.back().to = row + 1;
+Json loop_request(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
+  law_contact(scene);  // or why there is none, before the loop is read
+  const LoopRecord record = read_loop(file);
+  Json groups = Json::array();
+  for (const LoadRows& group : rows_by_load(record, *scene.steps.front().normal)) {
+    Json& json = groups.emplace_back(contact_json(scene, group.normal_load, record.of_force));
+    json["rows"] = {group.from, group.to};
   }
-  for (const LoadRows& group : groups) {
-    if (group.to - group.from >= kMinLoopRows) continue;
-    throw solver::InputError(
-        loop.file.string(),
-        fmt::format(
-            "rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
-            "load of its own for at least {} rows",
-            group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
-  }
-  return groups;
+  return {{"name", scene.name},
+          {"loop", file.string()},
+          {"of_force", record.of_force},
+          {"tolerance", options.tolerance},
+          {"strict", options.strict},
+          {"time", record.time},
+          {"load", record.load},
+          {"motion", record.motion},
+          {"groups", groups}};
 }
 
 }  // namespace slipstick::convergence
