@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cfenv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -9,7 +8,6 @@
 #include <stdexcept>
 
 #include "convergence/hard/rounding_digits.hpp"
-#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -49,22 +47,6 @@ TEST(SurvivingDigits, IntervalHoldsTheTruthAsOftenAsItSays) {
   }
   EXPECT_GT(held, 360);  // 380 expected; four standard deviations are 18
   EXPECT_LT(held, 398);
-}
-
-solver::Scene small_scene(std::int64_t seed) {
-  solver::Scene scene = solver::read_scene(SLIPSTICK_SCENES "/paper.toml", {"grid.cells=[24,24]"});
-  scene.solver.rounding_seed = seed;
-  return scene;
-}
-
-TEST(RandomRounding, ChangesTheLastDigitsAlone) {
-  const double nearest = solver::solve(small_scene(0)).twist_angle;
-  const double first = solver::solve(small_scene(1)).twist_angle;
-  EXPECT_NE(first, nearest);
-  EXPECT_NE(first, solver::solve(small_scene(2)).twist_angle);
-  EXPECT_EQ(first, solver::solve(small_scene(1)).twist_angle);
-  EXPECT_NEAR(first / nearest, 1.0, 1e-10);
-  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
 // Near the limit the twist depends on the missing moment, here 1e-10 of the limit, and rounding leaves six
