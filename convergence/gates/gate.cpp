@@ -35,9 +35,8 @@ const Json* stated_reference_error(const Json& object) {
 /// The interval of a bound that needs no other result.
 std::optional<Interval> own_interval(const Bound& bound) {
   if (const auto* below = std::get_if<Below>(&bound)) return Interval{-below->size, below->size};
-  if (const auto* above = std::get_if<Above>(&bound)) return Interval{.low = above->low};
-  if (const auto* between = std::get_if<Between>(&bound)) return Interval{between->low, between->high};
-  return {};
+  const auto* interval = std::get_if<Interval>(&bound);
+  return interval ? std::optional(*interval) : std::nullopt;
 }
 
 double half_width(const Interval& interval) { return 0.5 * (interval.high - interval.low); }
@@ -284,9 +283,9 @@ std::string bound_text(const Judgement& judgement) {
   struct Text {
     const std::optional<Interval>& known;
     std::string operator()(const Below& below) const { return fmt::format("below {} in size", below.size); }
-    std::string operator()(const Above& above) const { return fmt::format("above {}", above.low); }
-    std::string operator()(const Between& between) const {
-      return fmt::format("between {} and {}", between.low, between.high);
+    std::string operator()(const Interval& interval) const {
+      return std::isfinite(interval.high) ? fmt::format("between {} and {}", interval.low, interval.high)
+                                          : fmt::format("above {}", interval.low);
     }
     std::string operator()(const Equals& equals) const {
       return "equal to " +

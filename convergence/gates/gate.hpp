@@ -14,24 +14,14 @@
 /// A gate holds one number of a result to a bound, or compares it with a published number.
 namespace slipstick::convergence {
 
-/// The numbers x with low < x < high.
+/// low < x < high.
 struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
-
 /// |x| < size.
 struct Below {
   double size;
-};
-/// x > low.
-struct Above {
-  double low;
-};
-/// low < x < high.
-struct Between {
-  double low;
-  double high;
 };
 /// The value is this word or this number.
 struct Equals {
@@ -68,7 +58,7 @@ struct Published {
   std::string why;                           ///< reason, where another outcome than agreement is expected
 };
 
-using Bound = std::variant<Below, Above, Between, Equals, RelativeTo, Published>;
+using Bound = std::variant<Below, Interval, Equals, RelativeTo, Published>;
 
 /// A scene that is solved. overrides: "key=value", as --set takes them.
 struct SceneSource {

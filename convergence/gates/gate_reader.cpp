@@ -142,11 +142,11 @@ Bound read_interval(SceneReader& reader, const GateTable& at) {
   if (!below && !above) {
     reader.fail(at.own("below"), "(missing)", "below, above, both, equals, of and within, or published");
   }
-  if (!below) return Above{*above};
+  if (!below) return Interval{.low = *above};
   if (above && !(*above < *below)) {
     reader.fail(at.own("above"), shown(*above), "less than below, " + shown(*below));
   }
-  if (above) return Between{*above, *below};
+  if (above) return Interval{*above, *below};
   if (!(*below > 0.0)) {
     reader.fail(at.own("below"), shown(*below), "positive without above, as a bound on the size");
   }

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   gate.source = convergence::ResultSource{
       .file = file.write(text.substr(std::min(end + 1, text.size()))), .folder = {}, .made_by = {}};
   gate.quantity = std::string(text.substr(0, end));
-  gate.bound = convergence::Between{0.0, 1.0};
+  gate.bound = convergence::Interval{0.0, 1.0};
   gate.basis = "any";
   const auto judgements = convergence::run_gates({gate}, pool);
   if (judgements.size() != 1) std::abort();
