@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""on_meshes.py PROGRAM SCENE OUTPUT [--json FILE] [--only NAME]: finite-element programs twist the sphere of the scene by 0.5 and
+0.9 of the limit moment, each on its own meshes, and `slipstick check` judges every field. OUTPUT keeps decks and fields. Reports
+programs that are missing."""
+
+import argparse
+import json
+import subprocess
+import tomllib
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+
+
+def found(only=None):
+    """The files of programs with meshes of their own: folders, keys."""
+    for file in sorted(HERE.glob("*/program.toml")):
+        program = tomllib.loads(file.read_text())
+        if "faces" in program and only in (None, program["name"]):
+            yield file.parent, program
+
+
+def said_version(folder, program):
+    """The version, or None if the program is missing."""
+    done = subprocess.run(program["version"], cwd=folder, capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def solved(folder, program, scene, faces, output):
+    """The numbers of the program on a mesh with this number of faces across the contact radius."""
+    values = {"scene": Path(scene).resolve(), "folder": output.resolve(), "faces": faces}
+    subprocess.run([word.format(**values) for word in program["command"]], cwd=folder, check=True)
+    return json.loads((output / "numbers.json").read_text())
+
+
+def judged(slipstick, scene, field, ratio, twist, words):
+    """The result of `slipstick check`, or the reason why the field could not be judged."""
+    done = subprocess.run([slipstick, "check", scene, field, "--set", f"load.moment_ratio={ratio}", "--twist", str(twist),
+                           *map(str, words), "--json", "-", "--quiet"], capture_output=True, text=True)
+    return json.loads(done.stdout) if done.returncode in (0, 1) else {"verdict": "not judged", "why": done.stderr.strip(), "judged": []}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("slipstick")
+    parser.add_argument("scene")
+    parser.add_argument("output", type=Path)
+    parser.add_argument("--json", type=Path)
+    parser.add_argument("--only")
+    arguments = parser.parse_args()
+    board = []
+    for folder, program in found(arguments.only):
+        version = said_version(folder, program)
+        if version is None:
+            print(f"LEFT OUT: {program['name']} is not installed")
+            continue
+        for faces in program["faces"]:
+            output = arguments.output / f"{program['name']}-{faces}"
+            numbers = solved(folder, program, arguments.scene, faces, output)
+            for ratio, twist in numbers["twist_angle"].items():
+                result = judged(arguments.slipstick, arguments.scene, output / f"{ratio}.vtu", ratio, twist, numbers["check"])
+                board.append({"program": version, "faces": faces, "moment_ratio": float(ratio), "twist": twist,
+                              "cpu_seconds": numbers["cpu_seconds"], "check": result})
+                errors = ", ".join(f"{each['quantity']} {each['value']:.1e}" for each in result["judged"] if each["value"] is not None)
+                print(f"{version}, {faces} faces across the contact radius, {numbers['cpu_seconds']:.0f} CPU s: rotation {twist:.5e} rad "
+                      f"at {ratio} of the limit moment\n  {errors}\n  {result['verdict']}: {result['why']}")
+    if arguments.json:
+        arguments.json.write_text(json.dumps({"scene": arguments.scene, "board": board}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
