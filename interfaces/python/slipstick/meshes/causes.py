@@ -46,7 +46,7 @@ def causes_of(examined: Examined, request: Request, solve: Solve) -> list[str]:
 
 
 def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) -> float:
-    """The distance of the field's tractions (or other ones) from those of an answer on the same mesh, over the right ones."""
+    """The relative distance of the field's tractions, or of other ones (n, 2), from an answer (n, 3) on the same mesh."""
     judge = examined.judge
     own = examined.values[:, 1:] if shear is None else shear
     return float(judge.weights @ np.hypot(*(own - fields[:, 1:]).T) / (judge.weights @ judge.size))
@@ -59,7 +59,7 @@ def _number(examined: Examined, quantity: str) -> Judged:
 
 
 def _explained(examined: Examined, distance: float) -> bool:
-    """Whether a mistake explains the tractions: it lowers their distance from the right ones to a part, or to what the mesh allows."""
+    """Whether a mistake explains the tractions: with it, they are much closer to the right ones, or as close as the mesh allows."""
     own = _number(examined, "tractions")
     return distance < _EXPLAINS * abs(own.value) or (distance <= own.allowed < abs(own.value))
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import Any, Optional
 
 import numpy as np
@@ -68,6 +69,9 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     held = 0.0
     if request["held_at"]:
         radius, factor = [*request["held_at"], 1.0][:2]
+        if not (radius > right.contact_radius and np.isfinite(factor)):
+            raise InputError(f"--held-at {radius:g},{factor:g}; allowed: a radius above the contact's, {right.contact_radius:.3g} m, and a "
+                             "finite factor")
         held = factor * right.moment * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"]) / (
             4 * np.pi * radius**3)
     examined = examine(field, right, others, law, bodies, request["twist"], held, request["tolerance"])
@@ -158,6 +162,7 @@ def _numbers(examined: Examined) -> dict[str, Any]:
 
 
 def _why(examined: Examined, causes: list[str], good: bool) -> str:
+    """The verdict's reason: a headline, and sentences that follow after semicolons."""
     if good:
         tractions = examined.number("tractions")
         assert tractions is not None
@@ -166,14 +171,8 @@ def _why(examined: Examined, causes: list[str], good: bool) -> str:
     if not examined.wrong:
         return "it is right, but not in the scene's own signs"
     first, *rest = [item.words for item in examined.wrong]
-    parts = [first]
-    if causes:
-        parts.append(f"likely cause: {', and '.join(causes)}")
-    if rest:
-        parts.append(f"also wrong: {'; '.join(rest)}")
-    if not examined.shows:
-        parts.append(examined.advice)
-    return "; ".join(parts)
+    return "; ".join([first, *([f"likely cause: {', and '.join(causes)}"] if causes else []),
+                      *([f"also wrong: {', '.join(rest)}"] if rest else []), *([] if examined.shows else [examined.advice])])
 
 
 def _text(result: Mapping[str, Any], examined: Examined) -> str:
@@ -181,7 +180,9 @@ def _text(result: Mapping[str, Any], examined: Examined) -> str:
         return f"  {name:<16} {value}\n"
 
     turned = [choice.split(", since")[0] for choice in result["choices"] if choice.startswith("Body: the tractions")]
-    text = f"{result['verdict']}{''.join(f' ({note[6:]})' for note in turned)}: {result['why']}\n"
+    headline, *rest = result["why"].split("; ")
+    text = f"{result['verdict']}{''.join(f' ({note[6:]})' for note in turned)}: {headline}\n"
+    text += "".join(fill(part, 118, initial_indent="    ", subsequent_indent="      ") + "\n" for part in rest)
     text += line("field", f"{result['field']}: {result['rows']} {result['kind']}, {result['faces_across']:.3g} across the radius")
     text += "".join(line("" if k else "read as", choice) for k, choice in enumerate(result["choices"]))
     text += line("compared with", "; ".join([result["right_answer"], *examined.notes]))

@@ -104,8 +104,8 @@ def _linear(around: Array, densities: Array) -> tuple[Array, Array]:
 
 
 def _frame(start: Array, end: Array) -> tuple[Array, Array, Array, Array]:
-    """Of the edges from `start` to `end` (n, 2): the unit vector n from the origin to each edge's line, the vector t along it,
-    the distance of the line and the positions of both ends along t. The distance of a line through the origin is zero."""
+    """The frame of each edge from `start` to `end` (n, 2): the unit vector n from the origin to the edge's line, the vector t along
+    it, the distance of the line and the positions of both ends along t. The distance of a line through the origin is zero."""
     along = end - start
     along /= np.hypot(along[:, 0], along[:, 1])[:, None]
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
@@ -179,7 +179,7 @@ def _even(normal: Array, tangent: Array, distance: Array, position: Array, at_or
 
 
 def triangles_of(faces: list[Indices]) -> tuple[Indices, Indices, Array, npt.NDArray[np.bool_]]:
-    """Linear triangles (t, 3) over all faces, the face of each, its share, and whether it is one of those that cover the face once.
+    """Linear triangles (t, 3) over all faces, the face of each, its share, and a mask of triangles that cover each face once.
     Quadrilaterals are cut along both diagonals, with half a share each, so that no direction counts more; quadratic faces through all
     their nodes."""
     parts, rows, shares, first = [], [], [], 0

@@ -62,8 +62,7 @@ class Bodies:
 
 @dataclass(frozen=True)
 class Kernels:
-    """The integrals of pressure and tractions at chosen rows of a field. stick, slip: those of the rows that stick and slip in the
-    right answer. values (kernels, n, 3): the integrals of pressure, q1 and q2; own (n, 2): the tractions there."""
+    """The integrals of pressure and tractions at chosen rows of a field. values (kernels, n, 3): the integrals of pressure, q1 and q2; own (n, 2): the tractions there."""
 
     places: Array
     weights: Array
@@ -187,7 +186,7 @@ class Judge:
         return float(np.degrees(weights @ angle / weights.sum())), float(np.degrees(unsure.sum() / weights.sum()))
 
     def measure(self, field: Array, kernels: Optional[Kernels]) -> dict[str, float]:
-        """All numbers of a field (n, 3); those that cannot be measured are missing."""
+        """All numbers of a field (n, 3); a number that cannot be measured is missing."""
         right, w, p, q = self.right, self.weights, field[:, 0], field[:, 1:]
         load, moment, force = self.loads(field)
         bound, size = self.law.bound(p), np.hypot(q[:, 0], q[:, 1])

@@ -25,7 +25,7 @@ _PARTS = 4
 @dataclass(frozen=True)
 class Patches:
     """corners (t, 3, 2), m: of the triangles. rows (t, 3): the row of the field at each corner; on faces three times the same.
-    shares (t): the part of each triangle that counts, where several cover a face. once (t): those that cover each face once. weights (n), m^2: of each row in sums over the
+    shares (t): the part of each triangle that counts, where several cover a face. once (t): a mask of triangles that cover each face once. weights (n), m^2: of each row in sums over the
     contact."""
 
     kind: str
@@ -65,7 +65,7 @@ def patches_of(field: ContactField, right: Array) -> Patches:
 
 def areas_around(points: Array) -> Array:
     """The area (n) of each point (n, 2): the third of each triangle around it. Two triangles whose four corners lie on a circle are
-    the halves of a quadrilateral, of which each corner has a fourth: how Delaunay's triangulation divides it is by chance."""
+    the halves of a quadrilateral, and each corner has a fourth of it: Delaunay's triangulation picks a diagonal by chance."""
     rows = _triangulated(points)
     return np.bincount(rows.ravel(), _corner_areas(points[rows], rows).ravel(), minlength=len(points))
 
@@ -99,11 +99,11 @@ def _areas(corners: Array) -> Array:
 
 
 def _triangulated(points: Array) -> Indices:
-    """Delaunay's triangles, without those that cross a gap or lie along the hull."""
+    """Delaunay's triangles, without slivers along the hull and triangles that cross a gap."""
     simplices = Delaunay(points - points.mean(axis=0)).simplices
     corners = points[simplices]
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    # Of each point the length below which two fifths of its edges are.
+    # The usual length of each point's edges: two fifths of them are shorter.
     vertex, length = np.concatenate([simplices.ravel(), np.roll(simplices, 1, axis=1).ravel()]), np.tile(edges.ravel(), 2)
     order, count = np.lexsort((length, vertex)), np.bincount(vertex, minlength=len(points))
     local = length[order][np.minimum(np.cumsum(count) - count + (2 * count) // 5, len(order) - 1)][simplices].max(axis=1)

@@ -66,7 +66,7 @@ class Judged:
 
 @dataclass
 class Examined:
-    """A field, the right answer on its mesh, and what was measured. values (n, 3): pressure, q1, q2 of the field."""
+    """A field, the right answer on its mesh, and the numbers of both. values (n, 3): pressure, q1, q2 of the field."""
 
     field: ContactField
     right: Right
@@ -111,7 +111,7 @@ def percent(part: float) -> str:
 
 def examine(field: ContactField, right: Right, others: Mapping[str, Right], law: Law, bodies: Optional[Bodies],
             reported: Optional[float], held: float, tolerance: Optional[float]) -> Examined:
-    """Measures a field and what its mesh explains:
+    """Measures a field and the errors that its mesh explains:
 
     1. The right answer is put on the mesh in each way that programs do it, and so are `others`, right answers of other methods.
     2. All of them and the field are measured in the same way.
