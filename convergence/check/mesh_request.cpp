@@ -49,7 +49,10 @@ Json exact_json(const solver::Scene& scene) {
                {"moment", exact.moment},
                {"twist", exact.twist_angle},
                {"force", exact.force},
-               {"displacement", exact.displacement}});
+               {"displacement", exact.displacement},
+               {"profile", exact.friction.bound ? exact.friction.bound->name() : ""},
+               {"shear_unit", exact.friction.reference_bound},
+               {"moment_ratio", exact.moment / exact.friction.moment_limit}});
   return json;
 }
 

@@ -8,6 +8,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from ..errors import InputError
+from ..exact import traction
 from .displacement import KERNELS
 from .field import Array
 from .measures import Bodies, Kernels, Motion
@@ -20,6 +21,8 @@ _EXPLAINS = 0.35
 _OF_BODIES = 0.02
 #: Ratios of moments and twists count as equal up to this difference.
 _SAME_RATIO = 0.01
+#: Parts of the way from this moment to the limit, from which a history may have returned.
+_TOPS = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 0.98])
 #: Compliances of springs that are tried, over the compliance a/G* of the half-spaces.
 _SPRINGS = np.logspace(-2.5, 1, 8)
 
@@ -189,11 +192,17 @@ def _lost_history(examined: Examined, request: Request, solve: Solve, wrong: set
         from .right import exact_answer
         if _explained(examined, _distance(examined, exact_answer(first).fields(examined.patches.points))):
             yield "the history is lost: the tractions are those of a first loading by the last step"
-    elif request["steps"] == 1 and not wrong & {"moment", "friction"} and examined.judge.slips.sum() > 8:
-        judge = examined.judge
-        along = np.sum(examined.values[judge.slips, 1:] * judge.reference[judge.slips, 1:], axis=1)
-        if np.mean(along < 0) > 0.2:
-            yield "the tractions are those after a reversal: at the contact's edge they oppose this load"
+    elif request["steps"] == 1 and examined.right.radial and request["exact"]["profile"]:
+        numbers, judge = request["exact"], examined.judge
+        now, radius = numbers["moment_ratio"], np.hypot(*judge.x.T)
+        around = np.column_stack([-judge.x[:, 1], judge.x[:, 0]]) / np.maximum(radius, 1e-300)[:, None]
+        inside = np.minimum(radius / numbers["contact_radius"], 1 - 1e-9)
+        for top in [*(now + (1 - now) * _TOPS), *(-_TOPS), *(now - (1 + now) * _TOPS)]:
+            shear = numbers["shear_unit"] * traction(inside, history=[top, now], profile=numbers["profile"])
+            shear[radius >= numbers["contact_radius"]] = 0
+            if _explained(examined, _distance(examined, np.column_stack([radius, shear[:, None] * around]))):
+                yield f"another history: the tractions are those after a moment of {top:.2g} of the limit, unloaded to this one"
+                return
 
 
 def _other_twist(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:

@@ -122,14 +122,17 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     values = np.column_stack([field.pressure, field.traction])
     patches = patches_of(field, right.fields(field.points)[:, 0])
     answers = put_on(patches, right.fields)
-    reference = next(iter(answers.values()))
+    ways = list(answers.values())
+    reference = ways[0]
     judge = Judge(patches, right, reference, law, bodies)
     answers.update((name, _carrying(judge, next(iter(put_on(patches, other.fields).values())))) for name, other in others.items())
     fields = [values, *answers.values()]
     kernels: list[Any] = [None] * len(fields) if bodies is None else judge.kernels(fields)
     found, *measured = [judge.measure(*each) for each in zip(fields, kernels)]
     worst = {name: max(abs(each.get(name, 0.0)) for each in measured) for name in _FLOORS}
-    found["coverage"] = max(_uncovered(patches, right), 0.0 if field.area is None else _without_area(patches, reference))
+    loaded = reference[:, 0] > 0
+    across = right.contact_radius / np.sqrt(patches.weights @ loaded / max(1, np.count_nonzero(loaded)))
+    found["coverage"], worst["coverage"] = _coverage(field, judge, ways, across)
     right_twist = right.twist - held
     if reported is not None:
         found["twist"] = reported / right_twist - 1
@@ -140,8 +143,6 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     if tolerance is not None:
         allowances = {name: np.degrees(tolerance) if name == "slip_direction" else tolerance for name in _FLOORS}
     judged = [Judged(name, value, allowances[name], worst[name]) for name, value in found.items()]
-    loaded = reference[:, 0] > 0
-    across = right.contact_radius / np.sqrt(patches.weights @ loaded / max(1, np.count_nonzero(loaded)))
     motion = None if kernels[0] is None else judge.motion(kernels[0])
     return Examined(field, right, values, patches, judge, kernels[0], motion, allowances, judged, reported, right_twist, across)
 
@@ -154,22 +155,24 @@ def _carrying(judge: Judge, values: Array) -> Array:
     return values * np.array([right_load / load, shear, shear])
 
 
-def _uncovered(patches: Patches, right: Right) -> float:
-    """The part of the right normal load at places that are further from the nearest row than its triangles reach."""
+def _coverage(field: ContactField, judge: Judge, ways: list[Array], across: float) -> tuple[float, float]:
+    """The part of the right normal load that the rows of the field leave out: at places further from the nearest row than its triangles
+    reach, between given areas, or because no way to put the right answer on the mesh carries it. And the part that a rim of one face
+    has, of which the rows may lack a half."""
+    patches, right = judge.patches, judge.right
     places = right.centre + 1.5 * right.contact_radius * _disc()
     pressure = right.fields(places)[:, 0]
     edges = np.linalg.norm(patches.corners - np.roll(patches.corners, 1, axis=1), axis=2).max(axis=1)
     reach = np.zeros(len(patches.points))
     np.maximum.at(reach, patches.rows, edges[:, None])
     away, nearest = KDTree(patches.points).query(places)
-    return float(pressure @ (away > reach[nearest]) / pressure.sum())
-
-
-def _without_area(patches: Patches, reference: Array) -> float:
-    """The part of the contact's triangles that the given areas leave out."""
-    loaded = reference[:, 0] > 0
+    rim = right.fields(right.centre + (places - right.centre) / (1 - min(0.5, 1 / across)))[:, 0] == 0
+    loaded = ways[0][:, 0] > 0
     inside = patches.areas[loaded[patches.rows].all(axis=1)].sum()
-    return float(1 - patches.weights @ loaded / inside) if inside > 0 else 0.0
+    left_out = [pressure @ (away > reach[nearest]) / pressure.sum(),
+                min(1 - judge.loads(way)[0] / right.normal_load for way in ways),
+                1 - patches.weights @ loaded / inside if field.area is not None and inside > 0 else 0.0]
+    return float(max(left_out)), float(pressure @ rim / pressure.sum() / 2)
 
 
 def _disc() -> Array:
