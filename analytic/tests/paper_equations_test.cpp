@@ -72,8 +72,6 @@ TEST(PaperEquations, RefuseWhatLiesOutside) {
 
 // ---------------------------------------------------------------- other laws of the twist
 
-const double kLimit = hertz_profile().moment_limit();
-
 double error(double (*twist)(double), double moment_ratio) {
   const auto state = from_moment_ratio(moment_ratio);
   return twist(state.moment) / state.twist - 1;

@@ -54,24 +54,6 @@ TEST(FrictionLawOracle, TractionsCarryTheMomentWithinTheBound) {
   }
 }
 
-/// A constant strength does not depend on the pressure: all axisymmetric contacts of one radius turn equally.
-TEST(FrictionLawOracle, TrescasTwistIsThatOfTheRadiusAlone) {
-  const FrictionLaw law = law_of(FrictionKind::tresca);
-  const auto scaled = [&](const char* body) {
-    const Oracle oracle = find_oracle(under(law, 0.6, body)).oracle.value();
-    const double a = oracle.contact_radius;
-    EXPECT_NEAR(
-        oracle.friction.moment_limit / (2.0 * std::numbers::pi / 3.0 * law.shear_strength * a * a * a), 1.0,
-        1e-13);
-    return std::pair(oracle.twist_angle, oracle.stick_radius / a);
-  };
-  const auto [twist, stick] = scaled("paper");
-  for (const char* body : {"cone", "flat_punch", "rounded_punch"}) {
-    EXPECT_NEAR(scaled(body).first / twist, 1.0, 1e-12) << body;
-    EXPECT_NEAR(scaled(body).second / stick, 1.0, 1e-12) << body;
-  }
-}
-
 /// After m1 and back to m2 the twist is phi(m1) - 2 phi((m1 - m2)/2).
 TEST(FrictionLawOracle, FollowsMasingsRule) {
   for (const FrictionLaw& law : laws()) {

@@ -40,29 +40,6 @@ TEST(Oracle, PaperCase) {
   }
 }
 
-void expect_the_same_state_by_ratio_moment_and_twist(solver::Scene scene) {
-  scene.steps[0].torsion = solver::MomentRatio{0.7};
-  const Oracle by_ratio = *find_oracle(scene).oracle;
-  const auto with_load = [&](const std::string& key, double value) {
-    scene.steps[0].torsion =
-        key == "moment" ? solver::TorsionLoad(solver::Moment{value}) : solver::Twist{value};
-    return *find_oracle(scene).oracle;
-  };
-  for (const Oracle& other :
-       {with_load("moment", by_ratio.moment), with_load("twist", by_ratio.twist_angle)}) {
-    EXPECT_NEAR(other.stick_radius / by_ratio.stick_radius, 1.0, kOracleTolerance);
-    EXPECT_NEAR(other.twist_angle / by_ratio.twist_angle, 1.0, kOracleTolerance);
-    EXPECT_NEAR(other.moment / by_ratio.moment, 1.0, kOracleTolerance);
-  }
-}
-
-TEST(Oracle, TheSameStateByRatioMomentAndTwist) {
-  for (const char* file : {"paper", "cone", "flat_punch", "rounded_punch"}) {
-    SCOPED_TRACE(file);
-    expect_the_same_state_by_ratio_moment_and_twist(example(file));
-  }
-}
-
 TEST(Oracle, LastDigitsCostNoAnswer) {
   const Oracle plain = *find_oracle(example("paper")).oracle;
   for (const char* change :
@@ -73,32 +50,14 @@ TEST(Oracle, LastDigitsCostNoAnswer) {
   }
 }
 
-// Love's and Boussinesq's contacts and their limit moments, by formulas.
-TEST(Oracle, ConeAndFlatPunch) {
-  const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
-  const Oracle cone = *find_oracle(example("cone", {"load.moment_ratio=0.5"})).oracle;
-  const double cone_radius = std::sqrt(2.0 * 200.0 / (std::numbers::pi * effective_modulus * 0.01));
-  EXPECT_EQ(cone.normal.profile.get(), &analytic::cone_profile());
-  EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kOracleTolerance);
-  EXPECT_NEAR(cone.normal.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kOracleTolerance);
-  EXPECT_NEAR(cone.friction.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0,
-              kOracleTolerance);
-  EXPECT_NEAR(cone.moment / cone.friction.moment_limit, 0.5, kOracleTolerance);
+// A cone's pressure has no bound at its apex, a punch's none towards its edge.
+TEST(Oracle, ConeAndFlatPunchHaveNoPeak) {
+  const Oracle cone = *find_oracle(example("cone")).oracle;
   EXPECT_EQ(cone.normal.peak_pressure, HUGE_VAL);
   EXPECT_EQ(cone.pressure(0.0), HUGE_VAL);
-  EXPECT_EQ(cone.traction(0.0), 0.0);
-
-  const Oracle punch = *find_oracle(example("flat_punch", {"load.moment_ratio=0.9"})).oracle;
-  EXPECT_EQ(punch.normal.profile.get(), &analytic::flat_punch_profile());
-  EXPECT_EQ(punch.contact_radius, 5e-4);
-  EXPECT_NEAR(punch.normal.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kOracleTolerance);
-  EXPECT_NEAR(punch.friction.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0,
-              kOracleTolerance);
-  EXPECT_LT(punch.stick_radius, punch.contact_radius);
+  const Oracle punch = *find_oracle(example("flat_punch")).oracle;
   EXPECT_EQ(punch.normal.peak_pressure, HUGE_VAL);
-  EXPECT_NEAR(punch.pressure(0.0) / (1000.0 / (2.0 * std::numbers::pi * 5e-4 * 5e-4)), 1.0, kOracleTolerance);
-  EXPECT_EQ(punch.pressure(5e-4), 0.0);
-  EXPECT_EQ(punch.traction(6e-4), 0.0);
+  EXPECT_EQ(punch.pressure(punch.contact_radius), 0.0);
 }
 
 // Reissner and Sagoci's bonded punch until it begins to slip, phi = 3 M/(16 G a^3).

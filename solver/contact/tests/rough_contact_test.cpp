@@ -43,9 +43,8 @@ struct RoughFace {
   ArrayXd gap;
 };
 
-/// Applications on any mesh: at most, and where spots have many cells.
+/// At most, on any mesh.
 constexpr double kMostApplications = 60.0;
-constexpr double kWantedApplications = 40.0;
 constexpr double kTractionApplications = 45.0;
 constexpr double kTolerance = 1e-10;
 constexpr double kRounding = 1e-12;

@@ -123,10 +123,6 @@ struct CgBench {
     map.cells().each([&](Index first, Index last) { map.store(first, last, in_range, z, y); });
     return y;
   }
-  double energy(const VectorXd& x) const {
-    const VectorXd part = free.transpose() * x;
-    return part.dot(tangent * part);
-  }
 
   Index size;
   DenseMatrix op;

@@ -22,9 +22,6 @@ namespace {
 using Eigen::ArrayXd;
 using std::numbers::pi;
 
-/// Pressures of two solves that stop at their own iterates within a gap of 1e-10.
-constexpr double kSolved = 1e-9;
-
 Surface sphere(double radius) { return {.shape = Shape::sphere, .radius = radius}; }
 Surface ellipsoid(double radius_1, double radius_2, double angle) {
   return {.shape = Shape::ellipsoid, .radius_1 = radius_1, .radius_2 = radius_2, .angle = angle};
