@@ -72,6 +72,27 @@ class Right(CheckTest):
             scene = example(name, cells, ratio(part))
             self.good(scene, sampled(scene), twist=exactly(scene)["twist_angle"])
 
+    def test_errors_of_tractions(self):
+        """Exact samples differ from averages over cells only where the traction has an edge, and there less and less: by h^(1/2) in
+        bands of width h. The errors of the regions add up."""
+        l1, l2 = [], []
+        for cells, factor in ((32, 1), (128, 1), (48, 1.01)):
+            scene = example("paper", cells)
+            error = check(scene, scaled(sampled(scene), factor))["traction_error"]
+            for key in ("l1", "l2", "max"):
+                self.assertAlmostEqual(error[key], factor - 1, delta=1e-12)
+            parts = [error[part] for part in ("stick_edge", "contact_edge", "inside", "outside")]
+            for part, has_edge in zip(parts, (True, True, False, False)):
+                self.assertEqual(part["max"] > 1e-12, has_edge or factor > 1)
+            whole = error["averaged"]
+            self.assertAlmostEqual(sum(part["l1"] for part in parts), whole["l1"], delta=1e-12)
+            self.assertAlmostEqual(np.hypot.reduce([part["l2"] for part in parts]), whole["l2"], delta=1e-12)
+            self.assertEqual(max(part["max"] for part in parts), whole["max"])
+            l1.append(whole["l1"])
+            l2.append(whole["l2"])
+        self.assertAlmostEqual(np.log(l1[0] / l1[1]) / np.log(4), 1.5, delta=0.25)
+        self.assertAlmostEqual(np.log(l2[0] / l2[1]) / np.log(4), 1, delta=0.25)
+
     def test_two_questions(self):
         """Samples of the exact answer do not solve the grid's problem of constant cells: they are right within the mesh."""
         scene = example("paper", 48)

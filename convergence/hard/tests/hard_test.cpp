@@ -2,60 +2,14 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <tuple>
 
 #include "convergence/hard/hard_case.hpp"
-#include "convergence/runs/run_spec.hpp"
-#include "convergence/tests/scratch_folder.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 using namespace testing;
-
-// A mirror twice and the other side twice are the first view; so are four quarter turns, but for a full
-// angle.
-TEST(Variant, ComesBack) {
-  for (const char* name : {"turned_ellipse", "torsion_and_force", "off_centre", "imposed_displacement"}) {
-    const solver::Scene scene = example(name);
-    for (const auto& [variant, times] :
-         {std::pair{Variant::mirrored, 2}, {Variant::exchanged, 2}, {Variant::turned, 4}}) {
-      solver::Scene seen = scene;
-      for (int i = 0; i < times; ++i) seen = transformed(seen, variant);
-      const double angle = seen.surfaces[0].angle - scene.surfaces[0].angle;
-      EXPECT_NEAR(std::remainder(angle, 2.0 * std::numbers::pi), 0.0, 1e-14) << name;
-      EXPECT_EQ(seen.surfaces[0].at, scene.surfaces[0].at) << name;
-      EXPECT_EQ(seen.steps[0].force, scene.steps[0].force) << name;
-      EXPECT_EQ(seen.steps[0].displacement, scene.steps[0].displacement) << name;
-      EXPECT_EQ(seen.grid.cells, scene.grid.cells) << name;
-      EXPECT_EQ(seen.upper.young_modulus, scene.upper.young_modulus) << name;
-    }
-  }
-}
-
-TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
-  solver::Scene scene = example("paper");
-  scene.grid.cells = {64, 48};
-  scene.grid.extent = {1.0e-3, 2.4e-3};
-  const solver::Scene seen = transformed(scene, Variant::shifted);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double cell = (*scene.grid.extent)[i] / static_cast<double>(scene.grid.cells[i]);
-    EXPECT_NEAR((*seen.grid.extent)[i] / static_cast<double>(seen.grid.cells[i]) / cell, 1.0, 1e-14);
-    const double cells = (seen.surfaces[0].at[i] - scene.surfaces[0].at[i]) / cell;
-    EXPECT_NEAR(cells, std::round(cells), 1e-12);
-    EXPECT_GT(std::abs(cells), 0.5);
-  }
-}
-
-TEST(Variant, IsRefusedWhereItWouldBeAnotherContact) {
-  EXPECT_NE(why_not(example("rough_sphere"), Variant::turned), "");
-  EXPECT_EQ(why_not(example("rough_sphere"), Variant::exchanged), "");
-  EXPECT_NE(why_not(example("mindlin"), Variant::shifted), "");
-  EXPECT_EQ(why_not(example("paper"), Variant::shifted), "");
-  EXPECT_THROW(transformed(example("paper"), Variant::shifted), std::invalid_argument);  // without its extent
-  EXPECT_THROW(variant_of("upside_down"), std::invalid_argument);
-}
 
 SolveRecord made_record(double error, double uncertainty, double gap = 1e-9) {
   SolveRecord record;

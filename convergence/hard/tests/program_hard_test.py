@@ -44,6 +44,20 @@ class Hard(ProgramTest):
         self.assertLessEqual(max(views.values()), 1e-10, views)
         self.assertIn("gross slip", result["rows"][1]["reason"])
 
+    def test_views_of_any_scene(self):
+        """Each is the same contact, in a grid of the same cells; none is made where it would be another one."""
+        settings = '[family.set]\n"solver.tolerance" = 1e-10\n"grid.cells" = [16, 14]\n'
+        refused = {"turned_ellipse": (), "off_centre": (), "torsion_and_force": ("shifted",), "imposed_displacement": ("shifted",),
+                   "mindlin": ("shifted",), "rough_sphere": ("mirrored", "turned", "shifted")}
+        rows = self.hard("".join(family(settings, scene) for scene in refused))["rows"]
+        for (scene, none), row in zip(refused.items(), rows):
+            views = row["variants"]
+            for name in ("mirrored", "turned", "shifted", "in_other_units", "exchanged", "two_threads"):
+                if name in none:
+                    self.assertTrue(views[name] is None and views[name + "_reason"], (scene, name))
+                else:
+                    self.assertLessEqual(views[name], 1e-10, (scene, name))
+
     def test_compares_methods(self):
         result = self.hard(family(SMALL + RATIOS), "--once", "--beside", "paper")
         self.assertEqual(result["methods"]["paper"],
@@ -61,3 +75,14 @@ class Hard(ProgramTest):
         self.assertEqual(first, again)
         self.assertEqual(len({nearest, first, second}), 3)
         self.assertAlmostEqual(first / nearest, 1, delta=1e-10)
+
+    def test_digits_are_lost_next_to_the_limit(self):
+        """There the twist depends on the missing moment, here 1e-10 of the limit, and rounding leaves six digits of that difference."""
+        digits = []
+        for ratio in ("0.5", "0.9999999999"):
+            found = self.text_and_result("digits", str(SCENES / "paper.toml"), "--samples", "6", "--output", "kept", "--set",
+                                         "grid.cells=[16,16]", "--set", f"load.moment_ratio={ratio}")[1]
+            self.assertEqual(found["not_converged"], 0)
+            digits.append(found["digits"]["twist_angle"]["digits"])
+        self.assertGreater(digits[0], 11)
+        self.assertLess(digits[1], digits[0] - 2)

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <stdexcept>
 
@@ -47,22 +45,6 @@ TEST(SurvivingDigits, IntervalHoldsTheTruthAsOftenAsItSays) {
   }
   EXPECT_GT(held, 360);  // 380 expected; four standard deviations are 18
   EXPECT_LT(held, 398);
-}
-
-// Near the limit the twist depends on the missing moment, here 1e-10 of the limit, and rounding leaves six
-// digits of that difference.
-TEST(RoundingDigits, AreLostNextToTheLimit) {
-  const std::filesystem::path folder = testing::TempDir() + "slipstick-digits";
-  const ProcessPool pool({.folder = folder, .program = SLIPSTICK_PROGRAM});
-  const auto digits = [&](const char* ratio) {
-    const RunSpec spec{.scene = SLIPSTICK_SCENES "/paper.toml",
-                       .overrides = {"grid.cells=[16,16]", std::string("load.moment_ratio=") + ratio}};
-    const DigitsResult result = rounding_digits(spec, {.samples = 6}, pool);
-    EXPECT_EQ(result.not_converged, 0);
-    return std::ranges::find(result.digits, "twist_angle", &OutputDigits::output)->digits.value;
-  };
-  EXPECT_GT(digits("0.5"), 11.0);
-  EXPECT_LT(digits("0.9999999999"), digits("0.5") - 2.0);
 }
 
 }  // namespace

@@ -23,15 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace testing;
 
-TEST(WantedError, IsAQuantityAndANumberBelowOne) {
+TEST(WantedError, IsAQuantityAndANumber) {
   EXPECT_EQ(read_wanted_error("twist=1e-3").quantity, "twist_angle");
   EXPECT_EQ(read_wanted_error("stick_radius=0.02").quantity, "stick_radius");
   EXPECT_EQ(read_wanted_error("stick_radius=0.02").error, 0.02);
-  for (const char* word :
-       {"twist", "twist=", "twist=0", "twist=1", "twist=-1e-3", "twist=nan", "twist=1e-3x"}) {
-    EXPECT_THAT(solver::complaint([&] { read_wanted_error(word); }),
-                AllOf(HasSubstr("--want"), HasSubstr(word)));
-  }
 }
 
 /// A few cells: everything is there, nothing is accurate.
@@ -118,19 +113,6 @@ TEST_P(ScenePage, HasThePartsOfItsScene) {
   EXPECT_EQ(page["studies"].size(), has_given_grid(scene) ? 1U : 2U);
   for (const Json& row : page["hard"]["rows"]) EXPECT_NE(row["verdict"], "not_converged") << row;
   EXPECT_EQ(page["headline"]["counts"]["checks"]["Certificate"], "holds");
-}
-
-/// Scenes with an exact answer to more than the normal contact, by theory.
-TEST(Scenes, HaveTheExactAnswersThatTheoryHas) {
-  const std::set<std::string> exact{
-      "paper",        "paper-0.1",     "paper-0.5",      "paper-0.99",       "off_centre",
-      "cone",         "flat_punch",    "rounded_punch",  "mindlin",          "goodman",
-      "spence",       "spence_sphere", "fretting_force", "fretting_torsion", "growing_load",
-      "torsion_loop", "coated_sphere", "rubber_lens",    "capped_friction"};
-  for (const std::string& name : scene_names()) {
-    const auto oracle = find_oracle(example(name)).oracle;
-    EXPECT_EQ(oracle && oracle->only_normal.empty(), exact.contains(name)) << name;
-  }
 }
 
 /// Each error contains the stated error by the length of the steps; a number for which this is unknown has no

@@ -1,6 +1,8 @@
 #include "convergence/runs/process_pool.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -208,6 +210,15 @@ TEST_F(ProcessPoolTest, AFinishedResultStaysWhileAnotherProgramComputesIt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
   EXPECT_TRUE(cache.find(run.name, run.cache_key).has_value());
+}
+
+TEST_F(ProcessPoolTest, LeavesOtherChildrenOfThisProcessAlone) {
+  const pid_t other = fork();
+  if (other == 0) _exit(3);
+  EXPECT_TRUE(ProcessPool(options()).run(RunSpec{kPaper, {kCells}}).is_converged());
+  int status = 0;
+  EXPECT_EQ(waitpid(other, &status, 0), other);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 void handle(int) {}
