@@ -73,7 +73,7 @@ class Plan:
         return replace(self, faces=faces)
 
 
-def sector(radii, sectors=18, facets=2):
+def sector(radii, sectors=36, facets=2):
     """The part of the circle between the angles 0 and 2 pi/sectors."""
     angles = np.arange(facets + 1) * 2 * np.pi / (sectors * facets)
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -157,11 +157,20 @@ class ContactFaces:
             return np.vstack([values[:1] @ turns.mean(axis=0).T, np.einsum("sij,nj->nsi", turns, values[kept]).reshape(-1, 2)])
 
         faces = [number[each].transpose(0, 2, 1).reshape(-1, each.shape[1]) for each in plan.faces]
-        pressure = np.repeat(self.means[:, 0], count)
-        shear = np.einsum("sij,nj->nsi", turns, self.means[:, 1:]).reshape(-1, 2)
         whole = Plan(of_points(plan.points), faces, plan.rim, plan.pairs[:0])
-        nodal = {name: of_points(values) for name, values in self.nodal.items()}
-        return ContactFaces(whole, np.column_stack([pressure, shear]), nodal)
+        means = self.means
+        if means is not None:
+            shear = np.einsum("sij,nj->nsi", turns, means[:, 1:]).reshape(-1, 2)
+            means = np.column_stack([np.repeat(means[:, 0], count), shear])
+        return ContactFaces(whole, means, {name: of_points(values) for name, values in self.nodal.items()})
+
+    def over_nodal_areas(self):
+        """Forces at nodes over the areas of the nodes, which share each face equally."""
+        corners = [faces.ravel() for faces in self.plan.faces]
+        parts = np.split(self.plan.areas(), np.cumsum([len(faces) for faces in self.plan.faces])[:-1])
+        shares = [np.repeat(part / faces.shape[1], faces.shape[1]) for part, faces in zip(parts, self.plan.faces)]
+        areas = np.bincount(np.concatenate(corners), np.concatenate(shares), len(self.plan.points))
+        return replace(self, nodal={name: (values.T / np.where(areas > 0, areas, 1)).T for name, values in self.nodal.items()})
 
     def write(self, file):
         """VTK's XML of an unstructured grid (.vtu) with all arrays; vectors as two arrays, NAME1 and NAME2."""

@@ -1,5 +1,5 @@
 """CalculiX (Dhondt, Wittig): press without friction, switch friction on, twist. C3D8 and C3D6, face-to-face contact with a linear
-penalty, Coulomb's law with a stick slope; a sector of 20 degrees with cyclic conditions, or the whole circle (an O-grid)."""
+penalty, Coulomb's law with a stick slope; a sector of 10 degrees with cyclic conditions, or the whole circle (an O-grid)."""
 
 import argparse
 import re

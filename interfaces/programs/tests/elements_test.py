@@ -81,6 +81,17 @@ class OfMeshes(unittest.TestCase):
         np.testing.assert_allclose(whole.nodal["CSHEAR"], whole.plan.points @ turned, atol=1e-14)
         np.testing.assert_allclose(whole.nodal["COPEN"], np.hypot(*whole.plan.points.T), atol=1e-14)
 
+    def test_share_a_face_among_its_nodes(self):
+        """The areas of nodes fill the mesh; that of an inner node of quadrilaterals is a quarter of those around it."""
+        for name, plan in PLANS.items():
+            whole = elements.ContactFaces(plan, None, {"COPEN": np.ones(len(plan.points))})
+            whole = (whole if plan.sectors == 1 else whole.all_round()).over_nodal_areas()
+            self.assertAlmostEqual((1 / whole.nodal["COPEN"]).sum(), plan.sectors * plan.areas().sum(), places=10, msg=name)
+        inner = elements.ContactFaces(plan, None, {"CSHEAR": np.ones((len(plan.points), 2))}).over_nodal_areas()
+        centre = np.argmin(np.hypot(*plan.points.T))
+        around = plan.areas()[[centre in face for face in plan.faces[0]]].sum()
+        np.testing.assert_allclose(inner.nodal["CSHEAR"][centre], 4 / around)
+
 
 class OfFiles(unittest.TestCase):
     def setUp(self):

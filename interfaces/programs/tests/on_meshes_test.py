@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import on_meshes  # noqa: E402
 
-FACES = {"calculix": 12}  # across the contact radius
+FACES = {"calculix": 12, "getfem": 16}  # across the contact radius
 
 
 def main(slipstick, scenes, name):
