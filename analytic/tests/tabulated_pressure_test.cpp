@@ -277,14 +277,6 @@ TEST(TabulatedProfile, RefusesWhatIsNoContactPressure) {
   refused(sample([](double r) { return r < 0.6 ? 1.0 : 8.0; }, 15), "point", "pressures that fall outwards");
 }
 
-/// A flat punch has a little more pressure towards the edge than in the middle.
-TEST(TabulatedProfile, TakesAPressureThatRisesALittle) {
-  const auto table =
-      tabulated_profile("rising", sample([](double r) { return 1 / std::sqrt(1.2 - r * r); }, 50));
-  EXPECT_GT(table.profile->twist_slope(at(0.01)), 0);
-  EXPECT_LT(table.profile->stick_traction(at(0.8), 0.7, 0.1), table.profile->pressure(0.7));
-}
-
 class TableFile : public ::testing::Test {
  protected:
   TableFile()

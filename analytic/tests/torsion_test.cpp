@@ -49,19 +49,6 @@ TEST(Torsion, CarriesTheArgumentItself) {
   EXPECT_EQ(from_twist(0.3).twist, 0.3);
 }
 
-TEST(Traction, IsContinuousAtTheFrontAndCoulombsBeyond) {
-  for (const double c : {1e-12, 1e-9, 1e-3, 0.5, 0.9, 0.999999}) {
-    const auto state = from_stick_ratio(c);
-    const double front = std::sqrt((1 - c) * (1 + c));
-    EXPECT_NEAR(traction(state, c) / front, 1, 2 * kEps) << c;
-    // Inside, q falls off its value at the front like the square root of the distance.
-    const double inside = std::nextafter(c, 0.0);
-    EXPECT_NEAR(traction(state, inside) / front, 1, 4 * std::sqrt(1 - inside / c) / front) << c;
-    for (const double r : {c, (1 + c) / 2, 1.0})
-      EXPECT_NEAR(traction(state, r), std::sqrt((1 - r) * (1 + r)), kEps) << c;
-  }
-}
-
 TEST(TorsionRange, NamesGrossSlip) {
   for (const double bad : {1.0, 1.2, HUGE_VAL})
     EXPECT_THAT([&] { from_moment_ratio(bad); }, ThrowsMessage<std::domain_error>(AllOf(

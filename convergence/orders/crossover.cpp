@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 namespace slipstick::convergence {
 namespace {

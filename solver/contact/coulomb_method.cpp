@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <vector>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/grid/own_rows.hpp"

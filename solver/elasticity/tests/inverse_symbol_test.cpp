@@ -84,7 +84,7 @@ class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases()),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 
 /// On quadrants, without and with a mirror at the diagonal.
 class QuadrantSymbol : public InverseSymbolOf {};
@@ -99,9 +99,9 @@ std::vector<SymbolCase> cases_with(bool diagonal) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantSymbol, testing::ValuesIn(cases_with(false)),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Shapes, DiagonalSymbol, testing::ValuesIn(cases_with(true)),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 
 /// Also at the ends of the spectrum: signs that alternate, and no change at all.
 TEST_P(InverseSymbolOf, IsSymmetricAndPositiveDefinite) {

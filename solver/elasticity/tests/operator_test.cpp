@@ -96,7 +96,7 @@ class Operator : public testing::TestWithParam<OperatorCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 
 std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
   std::vector<OperatorCase> cases = operator_cases();
@@ -113,10 +113,10 @@ class QuadrantOperator : public Operator {};
 INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator, testing::ValuesIn(cases_without([](const OperatorCase& c) {
                            return c.kernel.inputs != c.kernel.outputs || c.diagonal;
                          })),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Shapes, WholeOperator,
                          testing::ValuesIn(cases_without([](const OperatorCase& c) { return !c.whole(); })),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
   const auto& [name, grid, kernel, diagonal] = GetParam();
@@ -126,21 +126,14 @@ TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
   for (const ArrayXd& traction : {random_traction(1), random_field_with_zero_rows(grid, kernel.inputs, 2),
                                   ArrayXd(ArrayXd::Ones(static_cast<Index>(kernel.inputs) * grid.cells()))}) {
     const ArrayXd expected = applied(*dense, traction);
-    if (expected.abs().maxCoeff() ==
-        0.0) {  // no traction at all, or coupling of one cell: nothing to compare with
-      EXPECT_EQ(applied(*fft, traction).abs().maxCoeff(), 0.0);
-      EXPECT_EQ(applied(*direct, traction).abs().maxCoeff(), 0.0);
-      continue;
-    }
-    for (LinearOperator* const op : {fft.get(), direct.get()}) {
-      EXPECT_LE(relative_difference(applied(*op, traction), expected), kOfThreeWays);
-    }
+    for (LinearOperator* const op : {fft.get(), direct.get()})
+      EXPECT_LE(largest(applied(*op, traction) - expected), kOfThreeWays * largest(expected));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantOperator,
                          testing::ValuesIn(cases_without([](const OperatorCase& c) { return c.whole(); })),
-                         [](const auto& tested) { return tested.param.name; });
+                         testing::PrintToStringParamName());
 
 /// With a mirror at the diagonal, q1 determines all of it, to the last bit.
 TEST_P(QuadrantOperator, IsTheDirectSumOfTheUnfoldedField) {

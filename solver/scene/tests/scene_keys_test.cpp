@@ -122,31 +122,6 @@ TEST_F(SceneKeys, StandInTheTableOnceEach) {
   for (const SettingKey& key : scene_keys()) EXPECT_TRUE(names.insert(key.name).second) << key.name;
 }
 
-TEST_F(SceneFile, IsReadKeyByKey) {
-  const Scene scene = read(std::string("name = \"paper\"\n") + kShortScene,
-                           {"grid.cells=[128, 96]", "grid.extent=[0.0011, 0.0012]", "solver.tolerance=1e-7",
-                            "solver.max_iterations=70", "solver.threads=2"});
-  EXPECT_EQ(scene.source, folder_ / "scene.toml");
-  EXPECT_EQ(scene.name, "paper");
-  EXPECT_EQ(scene.surfaces.front().shape, Shape::sphere);
-  EXPECT_EQ(scene.surfaces.front().radius, 0.018);
-  EXPECT_EQ(scene.upper.young_modulus, 210e9);
-  EXPECT_EQ(scene.upper.poisson_ratio, 0.3);
-  EXPECT_EQ(scene.lower.young_modulus, 210e9);
-  EXPECT_EQ(scene.contact.friction.coefficient, 0.1);
-  EXPECT_EQ(scene.contact.pressure, PressureModel::solved);
-  EXPECT_EQ(scene.contact.coupling, Coupling::automatic);
-  EXPECT_EQ(scene.steps[0].normal, 1000.0);
-  EXPECT_EQ(value_if<MomentRatio>(scene.steps[0].torsion), 0.9);
-  EXPECT_FALSE(value_if<Moment>(scene.steps[0].torsion) || value_if<Twist>(scene.steps[0].torsion));
-  EXPECT_EQ(scene.grid.cells, (std::array<Index, 2>{128, 96}));
-  EXPECT_EQ(scene.grid.extent, (std::array<double, 2>{0.0011, 0.0012}));
-  EXPECT_EQ(scene.solver.op, OperatorKind::dcfft);
-  EXPECT_EQ(scene.solver.tolerance, 1e-7);
-  EXPECT_EQ(scene.solver.max_iterations, 70);
-  EXPECT_EQ(scene.solver.threads, 2);
-}
-
 TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   const Scene scene = read(kShortScene);
   EXPECT_EQ(scene.name, "scene");  // the file's
