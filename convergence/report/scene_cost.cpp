@@ -95,9 +95,6 @@ std::string shown_number(double value, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:.2e}{}", value, unit) : std::string("-");
 }
 
-/// The status of a run that did not converge.
-std::string status_unless_converged(const std::string& status) { return status == "converged" ? "" : status; }
-
 }  // namespace
 
 Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
@@ -229,15 +226,14 @@ std::string costs_text(const SceneCosts& costs) {
                   costs.scene, costs.cost.number, shown_number(costs.cost.reference_uncertainty, ""),
                   "method", "cells", "tolerance", "error", "time");
   for (const CostPoint& point : costs.cost.points) {
-    const std::string status = status_unless_converged(point.status);
     text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point.method, point.cells,
                         point.tolerance, shown_number(point.error, ""), shown_number(point.seconds, " s"),
-                        status.empty() ? "" : "  " + status);
+                        point.status == "converged" ? "" : "  " + point.status);
   }
   for (const PageProgram& row : costs.programs.value_or(std::vector<PageProgram>{})) {
     text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "",
                         shown_number(row.error, ""), shown_number(row.seconds, " s"), row.number,
-                        status_unless_converged(row.status));
+                        row.status == "converged" ? "" : row.status);
   }
   const OperatorTimes& crossing = costs.operators;
   text += std::isfinite(crossing.cells)

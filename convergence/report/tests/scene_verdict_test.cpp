@@ -1,6 +1,6 @@
 #include "convergence/report/scene_verdict.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -63,24 +63,18 @@ TEST(Headline, IsGoodWhereEverythingHolds) {
 }
 
 TEST(Headline, IsBadWhereAnythingFails) {
-  for (const HardVerdict verdict : {HardVerdict::wrong, HardVerdict::not_converged}) {
+  const auto expect_bad = [](const char* words, const auto& change) {
     PaperValidation changed = paper();
-    set_verdict(changed, 1, verdict);
-    EXPECT_EQ(headline(changed).verdict(), "bad") << to_string(verdict);
-    EXPECT_TRUE(says(headline(changed), "f c: why"));
-  }
-  PaperValidation gates = paper();
-  gates.gates->front().outcome = Outcome::failed;
-  EXPECT_EQ(headline(gates).verdict(), "bad");
-  EXPECT_TRUE(says(headline(gates), "; wide failed"));
-  PaperValidation literature = paper();
-  literature.literature[1].outcome = Outcome::passed_unexpectedly;
-  EXPECT_EQ(headline(literature).verdict(), "bad");
-  EXPECT_TRUE(says(headline(literature), "; known passed unexpectedly"));
-  PaperValidation peer = paper();
-  peer.peers[1].verdict = "good";
-  EXPECT_EQ(headline(peer).verdict(), "bad");
-  EXPECT_TRUE(says(headline(peer), "Q is good (known to be bad)"));
+    change(changed);
+    EXPECT_EQ(headline(changed).verdict(), "bad") << words;
+    EXPECT_TRUE(says(headline(changed), words)) << words;
+  };
+  for (const HardVerdict verdict : {HardVerdict::wrong, HardVerdict::not_converged})
+    expect_bad("f c: why", [&](auto& made) { set_verdict(made, 1, verdict); });
+  expect_bad("; wide failed", [](auto& made) { made.gates->front().outcome = Outcome::failed; });
+  expect_bad("; known passed unexpectedly",
+             [](auto& made) { made.literature[1].outcome = Outcome::passed_unexpectedly; });
+  expect_bad("Q is good (known to be bad)", [](auto& made) { made.peers[1].verdict = "good"; });
 }
 
 /// A validation without gates.
@@ -90,31 +84,20 @@ PaperValidation quick() {
   return found;
 }
 
-TEST(Headline, HasAReasonForOmittedGates) {
-  const Json found = to_json(headline(quick()));
-  EXPECT_EQ(found["verdict"], "good");
-  EXPECT_TRUE(found["counts"]["gates"].is_null());
-  EXPECT_FALSE(found["counts"]["gates_reason"].empty());
-}
-
-TEST(HeadlineChanges, IgnoreDifferencesOfRounding) {
-  EXPECT_TRUE(changes(headline(paper(), 1.005e-5), to_json(headline(paper()))).empty());
-}
-
-TEST(HeadlineChanges, NameEachDifference) {
+TEST(HeadlineChanges, NameEachDifferenceAndEachPartThatOneOfThemOmits) {
+  const Json before = to_json(headline(paper()));
+  const Json omits = to_json(headline(quick()));
+  EXPECT_EQ(omits["verdict"], "good");
+  EXPECT_TRUE(omits["counts"]["gates"].is_null());
+  EXPECT_FALSE(omits["counts"]["gates_reason"].empty());
+  EXPECT_TRUE(changes(headline(paper(), 1.005e-5), before).empty());  // by rounding
   PaperValidation other = paper();
   other.hard.rows.erase(other.hard.rows.begin());
-  EXPECT_EQ(changes(headline(other, 2e-5), to_json(headline(paper()))),
+  EXPECT_EQ(changes(headline(other, 2e-5), before),
             (std::vector<std::string>{"hard scenes certified: 2 before, 1 now",
                                       "twist angle: 1.00e-05 before, 2.00e-05 now"}));
-}
-
-TEST(HeadlineChanges, NameAPartThatOneOfThemOmits) {
-  for (const auto& found : {changes(headline(paper()), to_json(headline(quick()))),
-                            changes(headline(quick()), to_json(headline(paper())))}) {
-    ASSERT_EQ(found.size(), 1U);
-    EXPECT_EQ(found.front().rfind("gates: ", 0), 0U);
-  }
+  for (const auto& found : {changes(headline(paper()), omits), changes(headline(quick()), before)})
+    EXPECT_THAT(found, testing::ElementsAre(testing::StartsWith("gates: ")));
 }
 
 /// The same command twice keeps the changes that the first one found.
@@ -148,22 +131,25 @@ StudyResult study_with(OrderVerdict verdict, double low, double high, double exp
   return study;
 }
 
-Shown order_of(const StudyResult& study) { return judge_order(study, "twist_angle", "twist").shown; }
-
 /// An order holds if its interval is not below the expected one; a wide interval is open.
 TEST(Order, CountsOnlyWhereItIsShown) {
-  EXPECT_EQ(order_of(study_with(OrderVerdict::asymptotic, 1.6, 2.5)), Shown::holds)
-      << "agrees with the expected order";
-  EXPECT_EQ(order_of(study_with(OrderVerdict::superconvergent, 2.4, 2.6)), Shown::holds);
-  EXPECT_EQ(order_of(study_with(OrderVerdict::preasymptotic, 1.2, 1.6)), Shown::fails);
-  EXPECT_EQ(order_of(study_with(OrderVerdict::preasymptotic, 0.5, 3.0)), Shown::open);
-  for (const OrderVerdict verdict : {OrderVerdict::oscillatory, OrderVerdict::too_few, OrderVerdict::floor}) {
-    EXPECT_EQ(order_of(study_with(verdict, -1.7, 16.0)), Shown::open) << to_string(verdict);
+  struct Case {
+    OrderVerdict verdict;
+    double low, high;
+    Shown shown;
+    double expected = 2.0;
+  };
+  using enum OrderVerdict;
+  for (const auto& [verdict, low, high, shown, expected] :
+       {Case{asymptotic, 1.6, 2.5, Shown::holds}, Case{superconvergent, 2.4, 2.6, Shown::holds},
+        Case{preasymptotic, 1.2, 1.6, Shown::fails}, Case{preasymptotic, 0.5, 3.0, Shown::open},
+        Case{oscillatory, -1.7, 16.0, Shown::open}, Case{too_few, -1.7, 16.0, Shown::open},
+        Case{OrderVerdict::floor, -1.7, 16.0, Shown::open},
+        Case{preasymptotic, 1.9, 2.1, Shown::open, kNaN}}) {
+    const Finding found = judge_order(study_with(verdict, low, high, expected), "twist_angle", "twist");
+    EXPECT_EQ(found.shown, shown) << to_string(verdict) << low;
   }
-  EXPECT_EQ(order_of(study_with(OrderVerdict::preasymptotic, 1.9, 2.1, kNaN)), Shown::open)
-      << "none is expected";
-  EXPECT_EQ(judge_order(study_with(OrderVerdict::asymptotic, 1.9, 2.1), "stick_radius", "stick radius").shown,
-            Shown::open);
+  EXPECT_EQ(judge_order(study_with(asymptotic, 1.9, 2.1), "stick_radius", "stick").shown, Shown::open);
 }
 
 /// A number of a page with its errors by the mesh and by the steps.
