@@ -17,7 +17,7 @@ PRISMS = ("GT_PRISM(3,1)", "FEM_PK_PRISM(3,1)", "IM_PRODUCT(IM_TRIANGLE(4),IM_GA
 
 
 class Problem:
-    """Both bodies in one mesh and one field u (mm). `motion`: the rotation (rad) and the approach (mm) of the upper body's far end,
+    """Both bodies, flat with the sphere's gap between them, in one mesh and one field u (mm). `motion`: the rotation (rad) and the approach (mm) of the upper body's far end,
     where moment and load act. Multipliers are forces (N) between the pairs of nodes that may touch."""
 
     def __init__(self, sphere, plan, depth):
@@ -26,7 +26,7 @@ class Problem:
         getfem.util_trace_level(0)
         self.getfem, self.sphere, self.plan = getfem, sphere, plan
         gap = sphere.radius - np.sqrt(sphere.radius**2 - np.sum(plan.points**2, axis=1))
-        self.bodies = [elements.extruded(plan, depth, gap, True), elements.extruded(plan, depth, 0 * gap, False)]
+        self.bodies = [elements.extruded(plan, depth, 0 * gap, upper) for upper in (True, False)]
         self.bodies[1].nodes[..., 2] -= APART
         mesh = getfem.Mesh("empty", 3)
         self.space, self.points = getfem.MeshFem(mesh, 3), getfem.MeshIm(mesh)
