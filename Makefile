@@ -108,8 +108,8 @@ bench: configure ## time everything, each time with its error, and draw the resu
 	$(call build,slipstick slipstick_python slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
-peers: configure ## install other programs from PyPI (build/peers) and Debian, draw pages with their answers, run simulators
-	$(call build,slipstick)
+peers: configure ## install other programs from PyPI (build/peers) and Debian, draw pages with their answers, run simulators and finite elements
+	$(call build,slipstick slipstick_python)
 	@interfaces/programs/peers $(BUILD)/slipstick $(BUILD)
 
 bench-against: configure ## compare the speed of this tree with REV, origin/main (bench/against itself exits with 0, 1 or 2)
