@@ -17,13 +17,13 @@ def write_table(file, columns, rows):
     file.write_text(",".join(columns) + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
 
 
-def request_of(scene, file):
-    """The program's request for a scene (a file's stem) and a loop; none: the program refuses it."""
+def request_of(scene, file, *options):
+    """The program's request for a scene (a file's stem) and a loop or another field; none: the program refuses it."""
     with tempfile.TemporaryDirectory() as folder:
         keeper, request = Path(folder) / "python", Path(folder) / "request.json"
         keeper.write_text(f"#!/bin/sh\ncat > {request}\necho '{{\"error\": \"kept\"}}'\n")
         keeper.chmod(0o755)
-        subprocess.run([PROGRAM, "check", SCENES / f"{scene}.toml", file], capture_output=True,
+        subprocess.run([PROGRAM, "check", SCENES / f"{scene}.toml", file, *options], capture_output=True,
                        env={**os.environ, "SLIPSTICK_PYTHON": str(keeper)})
         return json.loads(request.read_text()) if request.exists() else None
 
