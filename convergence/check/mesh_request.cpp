@@ -100,8 +100,8 @@ bool is_mesh_file(const std::filesystem::path& file) {
   for (const char* regular : {".h5", ".hdf5", ".vti", ".npz", ".npy", ".json"}) {
     if (ending == regular) return false;
   }
-  for (const char* mesh :
-       {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med", ".msh", ".inp", ".contact"}) {
+  for (const char* mesh : {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med",
+                           ".msh", ".inp", ".contact"}) {
     if (ending == mesh) return true;
   }
   std::vector<std::string> names = solver::text_table_names(file);

@@ -44,7 +44,7 @@ def spacing(size, fine, length, growth):
 @dataclass
 class Plan:
     """The mesh seen along the axis: points (n, 2) mm, arrays of faces of 3 or 4 nodes, counter-clockwise; `rim`: the points at the
-    bodies' end. Of a sector, `pairs` (m, 2): a point of the first cut face, and the point of the other one that it becomes when it
+    bodies' end. `pairs` (m, 2) of a sector: a point of the first cut face, and the point of the other one that it becomes when it
     is turned by the sector's angle; point 0 is the axis."""
 
     points: np.ndarray

@@ -142,7 +142,7 @@ def face_means(deck, stress, energy):
 
 
 def nodal_values(frd, points):
-    """Of each step, ccx's contact values at the first nodes (.frd file), which it extrapolates from the integration points."""
+    """The contact values of each step at the first nodes (.frd file), which it extrapolates from the integration points."""
     for block in frd.split(" -4  CONTACT")[1:]:
         rows = re.findall(r"^ -1 *(\d+)((?:.{12}){6})$", block.split("\n -3")[0], re.M)
         values = np.zeros((points, 6))

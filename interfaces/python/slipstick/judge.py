@@ -116,7 +116,7 @@ def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: fl
     strict: good only in the scene's own units and signs. overrides: as in solve(). If the scene is not a file, write paths in it as
     absolute paths.
 
-    Of a field on a mesh only: stick_slope, normal_stiffness: of its penalties, Pa/m. held_at: the radius at which its bodies are
+    For a field on a mesh only: stick_slope, normal_stiffness: of its penalties, Pa/m. held_at: the radius at which its bodies are
     held, m, and perhaps a factor of the effect. read_as: choices for its reader: kind, units, body, axis, basis, centre, names.
     """
     options: list[str] = []

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy as np
 from scipy.spatial import KDTree
 
+from ..errors import InputError
 from .field import Array, ContactField
 from .measures import Bodies, Judge, Kernels, Law, Motion
 from .patches import Patches, patches_of, put_on
@@ -124,6 +125,9 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     answers = put_on(patches, right.fields)
     ways = list(answers.values())
     reference = ways[0]
+    if not reference[:, 1:].any():
+        raise InputError(f"{field.name}: the scene has no shear at its points; allowed: a scene with torsion or a tangential force, and "
+                         "points in its contact")
     judge = Judge(patches, right, reference, law, bodies)
     answers.update((name, _carrying(judge, next(iter(put_on(patches, other.fields).values())))) for name, other in others.items())
     fields = [values, *answers.values()]
@@ -150,15 +154,20 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
 def _carrying(judge: Judge, values: Array) -> Array:
     """The right answer of another method on the mesh, scaled to the loads of the reference: a program controls its loads."""
     (load, moment, force), (right_load, right_moment, right_force) = judge.loads(values), judge.loads(judge.reference)
-    by_force = np.hypot(*right_force) * judge.right.contact_radius > abs(right_moment)
-    shear = (right_force @ right_force) / (right_force @ force) if by_force else right_moment / moment
+    size = np.hypot(*right_force) * judge.right.contact_radius
+    if max(size, abs(right_moment)) < 1e-6 * judge.right.contact_radius * (judge.weights @ judge.size):
+        shear = 1.0  # pressed only
+    elif size > abs(right_moment):
+        shear = (right_force @ right_force) / (right_force @ force)
+    else:
+        shear = right_moment / moment
     return values * np.array([right_load / load, shear, shear])
 
 
 def _coverage(field: ContactField, judge: Judge, ways: list[Array], across: float) -> tuple[float, float]:
     """The part of the right normal load that the rows of the field leave out: at places further from the nearest row than its triangles
-    reach, between given areas, or because no way to put the right answer on the mesh carries it. And the part that a rim of one face
-    has, of which the rows may lack a half."""
+    reach, between given areas, or because no way to put the right answer on the mesh carries it. And the part that half a rim of one
+    face has: rows may lack it."""
     patches, right = judge.patches, judge.right
     places = right.centre + 1.5 * right.contact_radius * _disc()
     pressure = right.fields(places)[:, 0]
