@@ -241,10 +241,11 @@ class HostileInput(ProgramTest):
                     self.refused(name, damage)
 
     def test_what_is_cut_off_anywhere_is_read_or_refused(self):
-        """A beginning may be a whole file too, as where a last line is missing."""
+        """A beginning may be a whole file too, as where a last line is missing. SLIPSTICK_TEST_ALL=1 cuts at more places."""
+        step = 7 if os.environ.get("SLIPSTICK_TEST_ALL") == "1" else 29
         for name in READERS:
             whole = self.good(name)
-            for size in range(0, len(whole), len(whole) // 8 if READERS[name][0] is None else 7):
+            for size in range(0, len(whole), len(whole) // 8 if READERS[name][0] is None else step):
                 Path(name).write_bytes(whole[:size])
                 code, said = self.ends(name)
                 self.assertIn(code, (0, 1, 2), (name, size, said))

@@ -28,13 +28,6 @@ Scene scene_under(FrictionKind kind, double moment_ratio = 0.7) {
   return scene;
 }
 
-Solution solved_under(const Scene& scene) {
-  const Solution solution = solve(scene);
-  EXPECT_EQ(solution.status, Status::converged) << solution.message;
-  EXPECT_LE(solution.certificate.gap, scene.solver.tolerance);
-  return solution;
-}
-
 void expect_same_tractions(const Solution& a, const Solution& b, double factor = 1.0) {
   EXPECT_LE(relative_difference(a.traction, factor * b.traction), kSame);
   EXPECT_NEAR(a.twist_angle / (factor * b.twist_angle), 1.0, kSame);

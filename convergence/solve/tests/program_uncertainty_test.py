@@ -98,7 +98,7 @@ class Draws(Uncertain):
     def test_of_a_sphere_are_those_made_here(self, seed=20261, scenes=1):
         # mu W / (G a^2) times the exact curve at constant pressure, a function of M / (mu W^(4/3)).
         curve = self.result("exact", "--history", "0.999999999", "--points", "5000")["curve"]
-        ratios, twists = [p["moment_ratio"] for p in curve], [p["twist"] for p in curve]
+        ratios, twists = (np.array([p[name] for p in curve]) for name in ("moment_ratio", "twist"))
         chance = random.Random(seed)
         for _ in range(scenes):
             moment, normal = chance.uniform(0.4, 0.97), chance.uniform(500, 3000)

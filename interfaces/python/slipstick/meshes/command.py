@@ -158,7 +158,13 @@ def _numbers(examined: Examined) -> dict[str, Any]:
     return {"normal_load": load, "moment": moment, "force": force.tolist(), "contact_radius": examined.judge.radius(examined.values),
             "stick_radius": examined.judge.stick_radius(examined.values),
             "right_stick_radius": examined.judge.stick_radius(examined.judge.reference), "right_twist": examined.right_twist,
+            **_or_reason("given_slip_direction", _given_slip_direction(examined), "the field has no slip where it should slip"),
             **_or_reason("twist", examined.reported, "not given"), **_or_reason("twist_of_tractions", twist, missing)}
+
+
+def _given_slip_direction(examined: Examined) -> Optional[float]:
+    field = examined.field
+    return None if field.slip is None else examined.judge.angle_of_given_slip(field.traction, field.slip)
 
 
 def _why(examined: Examined, causes: list[str], good: bool) -> str:
@@ -194,6 +200,9 @@ def _text(result: Mapping[str, Any], examined: Examined) -> str:
                                      ("stick radius", result["stick_radius"], "m", result["right_stick_radius"])):
         if value is not None:
             text += line(name, f"{value:.6g} {unit} (right: {right:.6g})")
+    if result["given_slip_direction"] is not None:
+        text += line("slip given", f"{result['given_slip_direction']:.2g} degrees from the traction in the mean; it is not judged, since "
+                                   "programs count the slip of pressing, too")
     for item in examined.judged:
         text += line("holds" if item.holds else "FAILS", f"{item.quantity:<26} {item.value:>9.1e}   allowed on this mesh "
                                                         f"{item.allowed:.1e}")

@@ -185,6 +185,16 @@ class Judge:
         unsure = motion.scatter * np.hypot(*motion.at(kernels.places[rows]).T) * kernels.weights[rows]
         return float(np.degrees(weights @ angle / weights.sum())), float(np.degrees(unsure.sum() / weights.sum()))
 
+    def angle_of_given_slip(self, traction: Array, slip: Array) -> Optional[float]:
+        """The mean angle between the slip (n, 2) that a file has and the traction (n, 2) where the right answer slips, weighted with the
+        slip, degrees. None: hardly any row slips."""
+        weights = self.weights[self.slips] * np.hypot(*slip[self.slips].T)
+        if self.slips.sum() < _FEWEST or not weights.sum() > 0:
+            return None
+        (s1, s2), (q1, q2) = slip[self.slips].T, traction[self.slips].T
+        angle = float(np.degrees(weights @ np.arctan2(np.abs(s1 * q2 - s2 * q1), s1 * q1 + s2 * q2) / weights.sum()))
+        return min(angle, 180 - angle)  # programs differ in whose slip they write
+
     def measure(self, field: Array, kernels: Optional[Kernels]) -> dict[str, float]:
         """All numbers of a field (n, 3); a number that cannot be measured is missing."""
         right, w, p, q = self.right, self.weights, field[:, 0], field[:, 1:]
