@@ -95,6 +95,11 @@ def errors(program, folder, state, rows):
         yield quantity, error(next(tractions)["value"] if at else found[quantity], reference)
 
 
+def spread(names):
+    """Names at equal distances in the table."""
+    return [names[k * len(names) // STATES] for k in range(STATES)] if len(names) > STATES else names
+
+
 def worst_errors(program, folder):
     """By profile and quantity."""
     rows = "".join(f"{k / 16},{3 - 3 * k / 16}\n" for k in range(17))
@@ -106,9 +111,9 @@ def worst_errors(program, folder):
     for profile, states in profiles.items():
         if len(states) < STATES:
             sys.exit(f"exact_errors.py: {profile} has {len(states)} states, fewer than {STATES}")
-        names = list(states)
+        with_tractions = [state for state, rows in states.items() if any(at for _, at, _ in rows)]
         every = {}
-        for state in (names[k * len(names) // STATES] for k in range(STATES)):
+        for state in dict.fromkeys([*spread(list(states)), *spread(with_tractions)]):
             for quantity, size in errors(program, folder, state, states[state]):
                 every.setdefault(quantity, []).append(size)
         worst[profile] = {}
