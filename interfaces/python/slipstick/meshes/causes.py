@@ -43,10 +43,12 @@ def causes_of(examined: Examined, request: Request, solve: Solve) -> list[str]:
 
     if no_friction := search(_no_friction):
         return no_friction
-    found = search(_other_basis, _missing_rows, _other_units, _other_contact, _extrapolated, _other_friction, _other_moment, _lost_history)
-    found += search(_other_twist) or search(_other_kernel)
+    basis, kernel = search(_other_basis), search(_other_twist) or search(_other_kernel)
+    pressed = [] if basis or kernel else search(_pressed_with_friction)  # either makes a shear along the radius, too
+    found = basis + pressed + search(_missing_rows, _other_units, _other_contact, _extrapolated, _other_friction, _other_moment,
+                                     _lost_history) + kernel
     if not found:
-        found = search(_pressed_with_friction) or search(_directions)
+        found = search(_directions)
     return found
 
 
@@ -95,8 +97,9 @@ def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, w
     outward = examined.judge.x / np.maximum(np.hypot(*examined.judge.x.T), 1e-300)[:, None]
     shear = examined.values[:, 1:]
     without = shear - np.sum(shear * outward, axis=1)[:, None] * outward
-    if _distance(examined, examined.judge.reference, without) < max(2 * _EXPLAINS * _number(examined, "tractions").value,
-                                                                  _number(examined, "tractions").allowed):
+    tractions = _number(examined, "tractions")
+    left = _distance(examined, examined.judge.reference, without)
+    if radial.value > 2 * radial.allowed or left < max(2 * _EXPLAINS * tractions.value, tractions.allowed):
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
 
 
@@ -202,7 +205,8 @@ def _lost_history(examined: Examined, request: Request, solve: Solve, wrong: set
         for top in [*(now + (1 - now) * _TOPS), *(-_TOPS), *(now - (1 + now) * _TOPS)]:
             shear = numbers["shear_unit"] * traction(inside, history=[top, now], profile=numbers["profile"])
             shear[radius >= numbers["contact_radius"]] = 0
-            if _explained(examined, _distance(examined, np.column_stack([radius, shear[:, None] * around]))):
+            off = _distance(examined, np.column_stack([radius, shear[:, None] * around]))
+            if off < _EXPLAINS * _number(examined, "tractions").value:
                 yield f"another history: the tractions are those after a moment of {top:.2g} of the limit, unloaded to this one"
                 return
 
