@@ -12,7 +12,7 @@ from ..exact import traction
 from .displacement import KERNELS
 from .field import Array
 from .measures import Bodies, Kernels, Motion
-from .right import Right
+from .right import Right, exact_answer
 from .verdict import Examined, Judged, percent
 
 #: A mistake explains an error that it lowers to this part, or to the mesh's own.
@@ -28,7 +28,6 @@ _SPRINGS = np.logspace(-2.5, 1, 8)
 
 _COUPLING = "the coupling K13 and K23 of normal and tangential tractions"
 _SOFT = "the penalty lets the contact slip where it should stick"
-_NORMAL, _TANGENTIAL = "layer.normal_compliance", "layer.tangential_compliance"
 
 Request = Mapping[str, Any]
 Solve = Callable[[Mapping[str, Any]], Right]
@@ -138,7 +137,7 @@ def _other_contact(examined: Examined, request: Request, solve: Solve, wrong: se
         return
     soft = ""
     if radius.value > 0 and _may_have_springs(request):
-        compliances, answers = _with_springs(examined, request, solve, _NORMAL)
+        compliances, answers = _with_soft_penalty(examined, request, solve)
         radii = [answer.contact_radius / examined.right.contact_radius - 1 for answer in answers]
         if radii and radius.value < max(radii):
             soft = f", a soft normal penalty (about {1 / np.interp(radius.value, [0, *radii], [1e-99, *compliances]):.1g} Pa/m)"
@@ -194,7 +193,6 @@ def _lost_history(examined: Examined, request: Request, solve: Solve, wrong: set
     if "tractions" not in wrong:
         return
     if (first := request.get("first_loading")) is not None:
-        from .right import exact_answer
         if _explained(examined, _distance(examined, exact_answer(first).fields(examined.patches.points))):
             yield "the history is lost: the tractions are those of a first loading by the last step"
     elif request["steps"] == 1 and examined.right.radial and request["exact"]["profile"]:
@@ -231,13 +229,13 @@ def _may_have_springs(request: Request) -> bool:
     return bool(not (request["stick_slope"] or request["normal_stiffness"] or request["layer"]) and request["half_spaces"])
 
 
-def _with_springs(examined: Examined, request: Request, solve: Solve, key: str) -> tuple[Array, list[Right]]:
-    """Compliances, m/Pa, of springs between the bodies, and the right answers with them."""
+def _with_soft_penalty(examined: Examined, request: Request, solve: Solve) -> tuple[Array, list[Right]]:
+    """Compliances, m/Pa, of normal springs between the bodies, and the right answers with them."""
     unit = examined.right.contact_radius * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"])
-    answers, other = [], _TANGENTIAL if key == _NORMAL else _NORMAL
+    answers = []
     for compliance in _SPRINGS:
         try:
-            answers.append(solve({"layer.kind": "winkler", key: compliance * unit, other: 0.0}))
+            answers.append(solve({"layer.kind": "winkler", "layer.normal_compliance": compliance * unit, "layer.tangential_compliance": 0.0}))
         except InputError:  # the contact is larger than the grid
             break
     return unit * _SPRINGS[:len(answers)], answers
@@ -280,8 +278,7 @@ def _hypotheses(examined: Examined, request: Request, kernels: Kernels) -> dict[
     tried: dict[str, tuple[Bodies, dict[str, Any]]] = {}
     if abs(bodies.coupled) > 1e-3 * bodies.normal:
         for name, factor in (("is missing", 0.0), ("has the wrong sign", -1.0)):
-            tried[f"{_COUPLING} {name}"] = (
-                replace(bodies, coupled=factor * bodies.coupled), {})
+            tried[f"{_COUPLING} {name}"] = replace(bodies, coupled=factor * bodies.coupled), {}
     tried["the cross kernel K12, odd in x1 and in x2, is mirrored as an even function"] = bodies, {"even": True}
     tried["the cross kernel K12 is missing"] = bodies, {"cross": 0.0}
     tried["the cross kernel K12 has the wrong sign"] = bodies, {"cross": -1.0}

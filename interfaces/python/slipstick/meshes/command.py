@@ -59,21 +59,14 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     field = in_units_of(field, right.contact_radius, right.normal_load)
     field, notes = _signed(field, right, any(word.startswith("body=") for word in request["read_as"]))
     springs = _springs(request, field, right)
-    across = 2 * right.contact_radius / np.sqrt(np.pi * right.contact_radius**2 / max(1, np.count_nonzero(field.pressure)))
+    across = 2 * np.sqrt(max(1, np.count_nonzero(field.pressure)) / np.pi)  # rows across the contact
     if request["exact"] is None or springs:
         right = _right(request, springs, int(np.clip(_FINER * across, _LEAST, _MOST)))
     others = {"a solve on cells as large as the faces": _right({**request, "exact": None}, springs, int(np.clip(across, 12, _MOST)))}
     law = Law(request["friction"])
     single = request["steps"] == 1 and request["half_spaces"]
     bodies = Bodies.of(request["upper"], request["lower"], springs.get("layer.tangential_compliance", 0.0)) if single else None
-    held = 0.0
-    if request["held_at"]:
-        radius, factor = [*request["held_at"], 1.0][:2]
-        if not (radius > right.contact_radius and np.isfinite(factor)):
-            raise InputError(f"--held-at {radius:g},{factor:g}; allowed: a radius above the contact's, {right.contact_radius:.3g} m, and a "
-                             "finite factor")
-        held = factor * right.moment * (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"]) / (
-            4 * np.pi * radius**3)
+    held = _held(request, right)
     examined = examine(field, right, others, law, bodies, request["twist"], held, request["tolerance"])
     if springs and request["exact"] is not None:
         bare = exact_answer(request["exact"])
@@ -83,6 +76,18 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     if held:
         examined.notes.append(f"bodies held at {request['held_at'][0]:g} m turn {percent(held / right.twist)} less")
     return examined, notes
+
+
+def _held(request: Mapping[str, Any], right: Right) -> float:
+    """The twist by which bodies that are held turn less than half-spaces, M/(4 pi G R^3), rad; zero where they are not held."""
+    if not request["held_at"]:
+        return 0.0
+    radius, factor = [*request["held_at"], 1.0][:2]
+    if not (radius > right.contact_radius and np.isfinite(factor)):
+        raise InputError(f"--held-at {radius:g},{factor:g}; allowed: a radius above the contact's, {right.contact_radius:.3g} m, and a "
+                         "finite factor")
+    compliance = request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"]
+    return float(factor * right.moment * compliance / (4 * np.pi * radius**3))
 
 
 def _reading(words: list[str]) -> dict[str, Any]:

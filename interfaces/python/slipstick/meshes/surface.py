@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from .displacement import triangles_of
 from .field import Array, Indices
 from .files.mesh import FACES, Blocks
 from .plane import Frame
@@ -31,10 +32,6 @@ _SOLIDS: dict[str, tuple[_Shape, int]] = {
     "pyramid13": (_PYRAMID, 5)}
 KNOWN = {*FACES, *_SOLIDS, "vertex", "line", "line3"}
 _TURNED = {3: [0, 2, 1], 6: [0, 2, 1, 5, 4, 3], 4: [0, 3, 2, 1], 8: [0, 3, 2, 1, 7, 6, 5, 4], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}
-_PARTS: dict[int, list[tuple[int, ...]]] = {  # linear parts of faces
-    3: [(0, 1, 2)], 6: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)], 4: [(0, 1, 2, 3)],
-    8: [(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6, 7)],
-    9: [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]}
 
 
 @dataclass(frozen=True)
@@ -167,18 +164,14 @@ def _areas(corners: Array) -> Array:
 
 def face_areas(faces: Indices, vertices: Array) -> Array:
     """(m): areas of faces; quadratic ones as the polygons through their middle nodes."""
-    parts = [abs(_areas(vertices[faces[:, list(part)]])) for part in _PARTS[faces.shape[1]]]
-    return np.asarray(np.sum(parts, axis=0))
+    triangles, face, shares, _ = triangles_of([faces])
+    return np.bincount(face, shares * abs(_areas(vertices[triangles])), minlength=len(faces))
 
 
 def nodal_areas(faces: list[Indices], vertices: Array) -> Array:
-    """(n): the area of each node: of each face's linear parts an equal share."""
-    areas = np.zeros(len(vertices))
-    for of_type in faces:
-        for part in _PARTS[of_type.shape[1]]:
-            nodes = of_type[:, list(part)]
-            np.add.at(areas, nodes, (abs(_areas(vertices[nodes])) / len(part))[:, None])
-    return areas
+    """(n): the area of each node, a third of each triangle around it."""
+    triangles, _, shares, _ = triangles_of(faces)
+    return np.bincount(triangles.ravel(), np.repeat(shares * abs(_areas(vertices[triangles])) / 3, 3), minlength=len(vertices))
 
 
 def vertices_in_plane(chosen: list[Faces], points: Array, frame: Frame) -> tuple[Array, list[Indices], Indices]:
