@@ -235,7 +235,8 @@ def _with_soft_penalty(examined: Examined, request: Request, solve: Solve) -> tu
     answers = []
     for compliance in _SPRINGS:
         try:
-            answers.append(solve({"layer.kind": "winkler", "layer.normal_compliance": compliance * unit, "layer.tangential_compliance": 0.0}))
+            answers.append(solve({"layer.kind": "winkler", "layer.normal_compliance": compliance * unit,
+                                  "layer.tangential_compliance": 0.0}))
         except InputError:  # the contact is larger than the grid
             break
     return unit * _SPRINGS[:len(answers)], answers

@@ -62,7 +62,8 @@ class Bodies:
 
 @dataclass(frozen=True)
 class Kernels:
-    """The integrals of pressure and tractions at chosen rows of a field. values (kernels, n, 3): the integrals of pressure, q1 and q2; own (n, 2): the tractions there."""
+    """The integrals of pressure and tractions at chosen rows of a field. values (kernels, n, 3): the integrals of pressure, q1
+    and q2; own (n, 2): the tractions there."""
 
     places: Array
     weights: Array

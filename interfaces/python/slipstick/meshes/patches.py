@@ -25,8 +25,8 @@ _PARTS = 4
 @dataclass(frozen=True)
 class Patches:
     """corners (t, 3, 2), m: of the triangles. rows (t, 3): the row of the field at each corner; on faces three times the same.
-    shares (t): the part of each triangle that counts, where several cover a face. once (t): a mask of triangles that cover each face once. weights (n), m^2: of each row in sums over the
-    contact."""
+    shares (t): the part of each triangle that counts, where several cover a face. once (t): a mask of triangles that cover each face
+    once. weights (n), m^2: of each row in sums over the contact."""
 
     kind: str
     points: Array

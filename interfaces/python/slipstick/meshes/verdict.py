@@ -39,8 +39,9 @@ _WRONG = {
     "slip_direction": "slip is not opposed to traction: {degrees} off in the mean",
 }
 #: The order in which the first wrong quantity heads the verdict: causes before effects.
-_ORDER = ("coverage", "normal_load", "contact_radius", "pressure", "moment", "force", "radial_shear", "friction", "friction_bound", "tractions",
-          "stick_radius", "twist", "twist_of_tractions", "displacement_of_tractions", "stick_motion", "slip_direction")
+_ORDER = ("coverage", "normal_load", "contact_radius", "pressure", "moment", "force", "radial_shear", "friction",
+          "friction_bound", "tractions", "stick_radius", "twist", "twist_of_tractions", "displacement_of_tractions", "stick_motion",
+          "slip_direction")
 
 
 @dataclass(frozen=True)
