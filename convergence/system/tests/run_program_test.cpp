@@ -96,6 +96,7 @@ TEST(RunProgram, DoesNotOutliveItsParent) {
   for (const int signal : {SIGKILL, SIGTERM, SIGHUP}) {
     const pid_t parent = fork();
     if (parent == 0) {
+      std::signal(signal, SIG_DFL);        // under nohup, SIGHUP is ignored
       setenv(kMarker, marker.c_str(), 1);  // /proc shows it in children, not in this process
       run_program({"sleep", "600"}, {.tied_by = SLIPSTICK_PROGRAM});
       _exit(0);
