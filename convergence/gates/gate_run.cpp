@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 #include <variant>
 
 #include "convergence/gates/gate.hpp"
@@ -30,7 +31,7 @@ struct SourceResult {
   double seconds = 0.0;
   std::string file_date;
 };
-using SourceResults = std::vector<SourceResult>;
+using SourceResults = std::map<GateSource, SourceResult>;
 
 /// The largest part of the error budget where a gate on an error of a solve fails; empty for other gates.
 /// Solves the scene up to three times more.
@@ -51,28 +52,27 @@ std::string find_dominant_error(const Judgement& judgement, const ProcessPool& p
       budget.reference);
 }
 
-/// Equal scenes are solved once; the first of them has the time.
 void solve_scenes(const std::vector<GateSource>& sources, const ProcessPool& pool, SourceResults& results) {
   std::vector<PreparedRun> runs;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const auto* const scene = std::get_if<SceneSource>(&sources[i]);
+  std::vector<SourceResult*> places;
+  for (const GateSource& source : sources) {
+    const auto* const scene = std::get_if<SceneSource>(&source);
     if (scene == nullptr) continue;
+    SourceResult& found = results[source];
     try {
       runs.push_back(prepare_run({.scene = scene->file, .overrides = scene->overrides}));
-      places.push_back(i);
+      places.push_back(&found);
     } catch (const InputError& error) {
-      results[i].refused = error.what();
+      found.refused = error.what();
     }
   }
   const std::vector<SolveRecord> solved = pool.run_prepared(runs);
-  std::set<GateSource> timed;
   for (std::size_t k = 0; k < solved.size(); ++k) {
-    SourceResult& found = results[places[k]];
+    SourceResult& found = *places[k];
     found.result = to_json(solved[k]);
     if (solved[k].out_of_memory) found.refused = solved[k].message;
     const double seconds = solved[k].seconds();
-    if (timed.insert(sources[places[k]]).second && std::isfinite(seconds)) found.seconds = seconds;
+    if (std::isfinite(seconds)) found.seconds = seconds;
   }
 }
 
@@ -103,21 +103,17 @@ SourceResult read_result(const ResultSource& source) {
   return found;
 }
 
-/// Equal studies are run once, each file is read once.
+/// Runs the studies and reads the files.
 void find_others(const std::vector<GateSource>& sources, const ProcessPool& pool, SourceResults& results) {
-  std::map<GateSource, SourceResult> known;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const auto* const study = std::get_if<StudySource>(&sources[i]);
-    const auto* const file = std::get_if<ResultSource>(&sources[i]);
-    if (study == nullptr && file == nullptr) continue;
-    const auto [found, is_new] = known.try_emplace(sources[i]);
+  for (const GateSource& source : sources) {
+    SourceResult& found = results[source];
     try {
-      if (is_new && study != nullptr) found->second.result = study_result(*study, pool);
-      if (is_new && file != nullptr) found->second = read_result(*file);
+      if (const auto* const study = std::get_if<StudySource>(&source))
+        found.result = study_result(*study, pool);
+      if (const auto* const file = std::get_if<ResultSource>(&source)) found = read_result(*file);
     } catch (const InputError& error) {
-      found->second.refused = error.what();
+      found.refused = error.what();
     }
-    results[i] = found->second;
   }
 }
 
@@ -157,27 +153,33 @@ GateSource other_source(const GateSource& own, const fs::path& file) {
 
 std::vector<GateSource> sources_of(const std::vector<Gate>& gates) {
   std::vector<GateSource> sources;
-  for (const Gate& gate : gates) sources.push_back(gate.source);
+  std::set<GateSource> known;
+  const auto add = [&](const GateSource& source) {
+    if (known.insert(source).second) sources.push_back(source);
+  };
+  for (const Gate& gate : gates) add(gate.source);
   for (const Gate& gate : gates) {
     if (const auto* const relative = std::get_if<RelativeTo>(&gate.bound))
-      sources.push_back(other_source(gate.source, relative->file));
+      add(other_source(gate.source, relative->file));
   }
   return sources;
 }
 
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {
   const std::vector<GateSource> sources = sources_of(gates);
-  SourceResults results(sources.size());
+  SourceResults results;
   solve_scenes(sources, pool, results);
   find_others(sources, pool, results);
   std::vector<Judgement> judgements;
-  std::size_t others = gates.size();
-  for (std::size_t i = 0; i < gates.size(); ++i) {
-    const bool relative = std::holds_alternative<RelativeTo>(gates[i].bound);
-    judgements.push_back(judge(gates[i], results[i], relative ? &results[others++] : nullptr));
-    judgements.back().seconds = results[i].seconds;
-    judgements.back().file_date = results[i].file_date;
-    judgements.back().dominant_error = find_dominant_error(judgements.back(), pool);
+  for (const Gate& gate : gates) {
+    SourceResult& source = results.at(gate.source);
+    const auto* const relative = std::get_if<RelativeTo>(&gate.bound);
+    const SourceResult* const other =
+        relative == nullptr ? nullptr : &results.at(other_source(gate.source, relative->file));
+    Judgement& judgement = judgements.emplace_back(judge(gate, source, other));
+    judgement.seconds = std::exchange(source.seconds, 0.0);
+    judgement.file_date = source.file_date;
+    judgement.dominant_error = find_dominant_error(judgement, pool);
   }
   return judgements;
 }

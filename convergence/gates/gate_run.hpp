@@ -15,7 +15,7 @@ namespace slipstick::convergence {
 /// results the runs of 3.
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
 
-/// The sources of the gates in their order, then the sources of the numbers to which gates are relative.
+/// The sources of the gates in their order, then those of the numbers to which gates are relative; each once.
 std::vector<GateSource> sources_of(const std::vector<Gate>& gates);
 
 }  // namespace slipstick::convergence

@@ -1,10 +1,11 @@
 """gates_test.py PROGRAM: outcomes of gates on made results, what their files may say, and the reports."""
 
 import json
+import os
 import xml.etree.ElementTree
 from pathlib import Path
 
-from program_run import SCENES, ProgramTest
+from program_run import PROGRAM, SCENES, ProgramTest
 
 PAPER = SCENES / "paper.toml"
 MARKUP = ("![x](http://a.b/c) [y](javascript:z) <javascript:z> @user #12 www.a.b https://a.b &#64;user `code` **b** \x1b[31m "
@@ -232,6 +233,16 @@ class Files(MadeGates):
         text = self.judged({"x": 0}, gate("x", below=1), "--only", "x", "y", code=2)[1]
         self.assertIn("--only y: no gate has this id; the nearest is x", text)
         self.judged({"x": 0}, gate("x", below=1), "--only", "x", "x", code=0)
+
+    def test_many_on_one_large_result_share_it(self):
+        """2,000 copies of a result of 2,000 numbers would take 300 MB."""
+        self.judged({f"q{i}": 1.0 * i for i in range(2000)}, "".join(gate(f"q{i}", below=9999) for i in range(2000)), code=0)
+        arguments = [PROGRAM, "gate", "gates.toml", "--quiet"]
+        child = os.posix_spawn(PROGRAM, arguments, os.environ)
+        _, status, used = os.wait4(child, 0)
+        self.assertEqual(os.waitstatus_to_exitcode(status), 0)
+        if not any(name in Path(PROGRAM).read_bytes() for name in (b"__asan_init", b"__tsan_init")):
+            self.assertLess(used.ru_maxrss, 100_000)  # kB
 
 
 class Reports(MadeGates):
