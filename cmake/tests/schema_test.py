@@ -195,6 +195,7 @@ class Results(unittest.TestCase):
         refused = text + GATE.format("refused", "status", "equals = 1").replace("paper.toml", "nothing.toml")
         files = [self.file("refused.toml", refused), self.file("unreadable.toml", "[[gate]]\nid =")]
         self.run_and_check("gate", *files, "--output", self.folder / "gates", code=2)
+        self.run_and_check("gate", *files, "--list", code=2)
 
     def test_programs(self):
         kept = self.folder / "exchange.json"

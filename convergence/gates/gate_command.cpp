@@ -26,6 +26,7 @@ struct GateRequest {
   std::string junit;
   std::string summary;
   std::string results;
+  bool list = false;
   RunOptions runs{.output = "build/gates"};
 };
 
@@ -61,7 +62,21 @@ std::vector<Gate> with_overrides(std::vector<Gate> gates, const std::vector<std:
   return gates;
 }
 
+/// Lists the gates, judged or not. Exit code 2 where a file cannot be read.
+int list_gates(const GateRequest& request, std::ostream& text, Json& result) {
+  GateFiles files = read_gate_files(request.files, request.results);
+  std::vector<Judgement>& listed = files.unreadable;
+  const int code = listed.empty() ? 0 : 2;
+  const auto as_listed = [](const Gate& gate) { return refuse(gate, ""); };
+  std::ranges::transform(with_overrides(select_gates(files.gates, request.only), request.runs.overrides),
+                         std::back_inserter(listed), as_listed);
+  text << list_text(listed);
+  result = list_json(listed);
+  return code;
+}
+
 int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
+  if (request.list) return list_gates(request, text, result);
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
   const GateFiles files = read_gate_files(request.files, request.results);
@@ -98,14 +113,19 @@ RunCommand add_gate_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
   command->add_option("files", request->files, "gate files (TOML)")->required();
-  command->add_option("--only", request->only, "run only the gates with these ids; comes after the files");
-  command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
-  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_option("--only", request->only,
+                      "run only the gates with these ids, as 'paper-*' too; comes after the files");
+  CLI::Option* const list = command->add_flag(
+      "--list", request->list, "list the gates with their files, quantities and bounds, and run none");
+  command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file")
+      ->excludes(list);
+  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB")
+      ->excludes(list);
   command->add_option("--results", request->results,
                       "folder of the result files that gates name (default: the gate file's folder)");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
-  request->runs.add_list_to(*command, {"--junit", "--summary"});
+  request->runs.add_list_to(*command, {"--junit", "--summary", "--list"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "

@@ -1,9 +1,12 @@
 #include "convergence/gates/gate_reader.hpp"
 
 #include <fmt/ranges.h>
+#include <fnmatch.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -326,21 +329,29 @@ GateFiles read_gate_files(const std::vector<std::string>& files,
   return result;
 }
 
-std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& ids) {
-  if (ids.empty()) return gates;
-  std::vector<std::string> known;
-  for (const Gate& gate : gates) known.push_back(gate.id);
-  for (const std::string& id : ids) {
-    if (std::find(known.begin(), known.end(), id) == known.end()) {
-      throw InputError("--only " + id, known.empty() ? "there is no gate"
-                                                     : "no gate has this id; the nearest is " +
-                                                           solver::nearest_word(id, known));
+std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& patterns) {
+  if (patterns.empty()) return gates;
+  std::set<std::string> selected;
+  for (const std::string& pattern : patterns) {
+    const bool is_id = std::ranges::find(gates, pattern, &Gate::id) != gates.end();
+    std::vector<std::string> matching;
+    std::vector<std::string> known;
+    for (const Gate& gate : gates) {
+      known.push_back(gate.id);
+      if (is_id ? gate.id == pattern : fnmatch(pattern.c_str(), gate.id.c_str(), 0) == 0)
+        matching.push_back(gate.id);
     }
+    if (matching.empty()) {
+      throw InputError("--only " + pattern, known.empty() ? "there is no gate"
+                                                          : "no gate has this id; the nearest is " +
+                                                                solver::nearest_word(pattern, known));
+    }
+    selected.insert(matching.begin(), matching.end());
   }
-  std::vector<Gate> selected;
-  std::copy_if(gates.begin(), gates.end(), std::back_inserter(selected),
-               [&](const Gate& gate) { return std::find(ids.begin(), ids.end(), gate.id) != ids.end(); });
-  return selected;
+  std::vector<Gate> chosen;
+  std::ranges::copy_if(gates, std::back_inserter(chosen),
+                       [&](const Gate& gate) { return selected.contains(gate.id); });
+  return chosen;
 }
 
 }  // namespace slipstick::convergence

@@ -29,8 +29,8 @@ struct GateFiles {
 GateFiles read_gate_files(const std::vector<std::string>& files,
                           const std::filesystem::path& results_folder = {});
 
-/// The gates with these ids; all gates if there are no ids. Throws InputError for an id that no gate has,
-/// with the nearest id.
-std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& ids);
+/// The gates whose ids are, or match, one of the patterns of a shell: * ? [ab]; all gates if there are no
+/// patterns. Throws InputError for a pattern that matches no id, with the nearest id.
+std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& patterns);
 
 }  // namespace slipstick::convergence

@@ -89,6 +89,12 @@ std::string value_text(const Judgement& judgement) {
   return ours ? fmt::format("{:.8g} (own error {:.2g} half units)", ours->value, ours->half_units) : "-";
 }
 
+/// The file that a gate's number comes from.
+std::string source_name(const Gate& gate) {
+  const std::string name = file_of(gate.source).lexically_normal().string();
+  return name.empty() ? "-" : name;
+}
+
 /// False for a gate file that could not be read.
 bool was_read(const Judgement& judgement) { return !judgement.gate.quantity.empty(); }
 
@@ -199,6 +205,42 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
   }
   for (const auto& [file, date] : dates) text += fmt::format("  {} was changed on {}\n", file, date);
   return text + details + published_counts(judgements) + counts_of(judgements) + "\n";
+}
+
+std::string list_text(const std::vector<Judgement>& gates) {
+  std::string text;
+  std::size_t ids = 0;
+  std::size_t sources = 0;
+  for (const Judgement& each : gates) {
+    ids = std::max(ids, each.gate.id.size());
+    sources = std::max(sources, source_name(each.gate).size());
+  }
+  for (const Judgement& each : gates) {
+    const Gate& gate = each.gate;
+    text += was_read(each) ? fmt::format("  {:<{}}  {:<{}}  {}, {}\n", gate.id, ids, source_name(gate),
+                                         sources, gate.quantity, bound_text(each))
+                           : fmt::format("  {}: {}\n", gate.id, each.why);
+  }
+  return text + fmt::format("{} gate{}\n", gates.size(), gates.size() == 1 ? "" : "s");
+}
+
+Json list_json(const std::vector<Judgement>& gates) {
+  Json rows = Json::array();
+  for (const Judgement& each : gates) {
+    Json& row = rows.emplace_back(judgement_json(each));
+    if (!was_read(each)) continue;
+    for (const char* const of_verdict :
+         {"outcome", "value", "value_reason", "factor", "factor_reason", "why"})
+      row.erase(of_verdict);
+    constexpr std::array kSources{"", "scene", "study", "result"};
+    if (const std::string name = source_name(each.gate); name != "-")
+      row.emplace(kSources.at(each.gate.source.index()), name);
+    if (const auto* const scene = std::get_if<SceneSource>(&each.gate.source))
+      row.emplace("set", scene->overrides);
+    if (const auto* const study = std::get_if<StudySource>(&each.gate.source))
+      row.emplace("set", study->overrides);
+  }
+  return {{"listed", rows}};
 }
 
 std::string gates_junit(const std::vector<Judgement>& judgements) {

@@ -11,6 +11,13 @@ namespace slipstick::convergence {
 /// One line for each gate, then the details of each gate that is wrong, then the counts.
 std::string gates_text(const std::vector<Judgement>& judgements);
 
+/// Gates that were not run, as refuse() makes judgements of them: one line for each with id, file, quantity
+/// and bound; a gate file that cannot be read with the reason.
+std::string list_text(const std::vector<Judgement>& gates);
+
+/// {listed: [a row for each gate, without outcome and value, with its scene, study or result]}.
+Json list_json(const std::vector<Judgement>& gates);
+
 /// JUnit's XML: one suite for each file, one case for each gate. Refused gates are errors; reported gates and
 /// expected failures are skipped.
 std::string gates_junit(const std::vector<Judgement>& judgements);

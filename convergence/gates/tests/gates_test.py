@@ -234,6 +234,35 @@ class Files(MadeGates):
         self.assertIn("--only y: no gate has this id; the nearest is x", text)
         self.judged({"x": 0}, gate("x", below=1), "--only", "x", "x", code=0)
 
+    def test_patterns_select_as_in_a_shell(self):
+        """An id is itself first, whatever it looks like."""
+        gates = "".join(gate("x", id=name, below=1) for name in ("paper-1", "paper-2", "ellipse-1", "paper-[1]"))
+        for patterns, selected in ((["paper-?"], ["paper-1", "paper-2"]), (["paper-[1]"], ["paper-[1]"]),
+                                   (["*-1", "paper-1"], ["paper-1", "ellipse-1"]), (["*"], ["paper-1", "paper-2", "ellipse-1", "paper-[1]"]),
+                                   (["paper-[!1]"], ["paper-2"])):
+            rows, _ = self.judged({"x": 0}, gates, "--only", *patterns, code=0)
+            self.assertEqual(list(rows), selected, patterns)
+        text = self.judged({"x": 0}, gates, "--only", "papper-*", code=2)[1]
+        self.assertIn("--only papper-*: no gate has this id; the nearest is paper-", text)
+
+    def test_are_listed_without_a_run(self):
+        gates = (gate("x", id="size", below=2e-5) + gate("y", id="scene", above=1, below=2, scene="no.toml") + "set = { 'a.b' = 3 }\n"
+                 + gate("z", id="other", of="before.json", within=0.1))
+        Path("gates.toml").write_text(gates)
+        text = self.run_program("gate", "gates.toml", "--output", "points", "--list")
+        self.assertRegex(text, r"size +work.json +x, below 2e-05 in size\n +scene +no.toml +y, between 1 and 2\n +other ")
+        self.assertTrue(text.endswith("3 gates\n"))
+        self.assertFalse(Path("points").exists())
+        Path("broken.toml").write_text("[[gate]]\nid = 3\n")
+        self.run_program("gate", "gates.toml", "broken.toml", "--only", "s*", "--list", "--json", "list.json", code=2,
+                         says="broken.toml:2")
+        broken, size, scene = json.loads(Path("list.json").read_text())["listed"]
+        self.assertIn("broken.toml:2", broken["why"])
+        self.assertEqual([size[key] for key in ("id", "result", "quantity", "below", "basis")],
+                         ["size", "work.json", "x", 2e-5, "measured 1e-6"])
+        self.assertEqual([scene[key] for key in ("scene", "set", "above")], ["no.toml", ["a.b=3"], 1])
+        self.assertFalse({"value", "outcome", "factor"} & scene.keys())
+
     def test_many_on_one_large_result_share_it(self):
         """2,000 copies of a result of 2,000 numbers would take 300 MB."""
         self.judged({f"q{i}": 1.0 * i for i in range(2000)}, "".join(gate(f"q{i}", below=9999) for i in range(2000)), code=0)
