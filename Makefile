@@ -59,7 +59,7 @@ test: configure ## run every test
 	$(call build,tests)
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
 
-gate: configure ## check the numbers stated in README.md, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
+gate: configure ## check the numbers stated in README.md and the guides, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	$(call build,slipstick slipstick_work)
 	@$(PYTHON) -B bench/work/count_work.py $(BUILD)/bench/slipstick_work $(BUILD)/gates/work.json
 	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \

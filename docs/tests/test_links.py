@@ -1,6 +1,7 @@
 """test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md, CONTRIBUTING.md and docs/**/*.md has a
 target, and every file, function and test that they name exists. If MkDocs is installed, the site builds without a warning and
 loads nothing from other servers."""
+import importlib.util
 import pathlib
 import re
 import subprocess
@@ -126,9 +127,34 @@ def equations(text):
 
 
 class ReadmeTest(unittest.TestCase):
-    def test_shows_the_two_commands_and_a_figure_on_the_first_screen(self):
-        lines = (ROOT / "README.md").read_text().splitlines()
-        self.assertLessEqual(len(lines), 180)
-        screen = "\n".join(lines[:40])
-        for wanted in ["make report", "make test", "![Twist against load"]:
+    LINES = (ROOT / "README.md").read_text().splitlines()
+
+    def test_shows_paper_pictures_and_the_two_commands_on_the_first_screen(self):
+        screen = "\n".join(self.LINES[:40])
+        for wanted in ["D. Gradinaru and S. Spinu", "Eq. (7)", "![Geometry", "![Twist against load", "make report", "make test"]:
             self.assertIn(wanted, screen)
+
+    def test_is_short_and_leads_three_readers_on(self):
+        self.assertLessEqual(len(self.LINES), 103)
+        rows = [line for line in self.LINES[:40] if line.startswith("| ") and "](docs/guides/" in line]
+        self.assertEqual(len(rows), 3)
+
+
+class GlossaryTest(unittest.TestCase):
+    def test_terms_are_in_alphabetical_order_and_short(self):
+        terms = re.split(r"^## ", (ROOT / "docs/glossary.md").read_text(), flags=re.M)[1:]
+        names = [term.partition("\n")[0].lower() for term in terms]
+        self.assertEqual(names, sorted(names))
+        self.assertEqual([name for name, term in zip(names, terms) if len(term.split()) > 110], [])
+
+
+@unittest.skipUnless(importlib.util.find_spec("matplotlib"), "Matplotlib is not installed")
+class SketchTest(unittest.TestCase):
+    def test_is_the_one_that_its_script_draws(self):
+        """By the labels, which Matplotlib writes as comments: its versions draw the same figure in other bytes."""
+        with tempfile.TemporaryDirectory() as folder:
+            drawn = pathlib.Path(folder) / "geometry.svg"
+            subprocess.run([sys.executable, "-B", ROOT / "docs/generator/geometry.py", drawn], check=True)
+            labels = [re.findall(r"<!-- (.*?) -->", file.read_text(), re.S) for file in [drawn, ROOT / "docs/geometry.svg"]]
+        self.assertIn("sphere", "".join(labels[0]))
+        self.assertEqual(*labels)

@@ -41,6 +41,12 @@ class PagesTest(unittest.TestCase):
                                  for problem in CHECKOUT.command_problems(words)]
         self.assertEqual("\n".join(problems), "")
 
+    def test_index_has_every_command(self):
+        commands = re.findall(r"^  ([a-z]+) ", CHECKOUT.help("").partition("Subcommands:")[2], re.M)
+        self.assertGreater(len(commands), 10)
+        index = (ROOT / "docs/index.md").read_text()
+        self.assertEqual([command for command in commands if f"`{command}`" not in index], [])
+
 
 class RunnerTest(unittest.TestCase):
     """Made-up pages with mistakes, which must be found."""
