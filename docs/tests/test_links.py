@@ -80,6 +80,7 @@ class LinksTest(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             site = pathlib.Path(folder)
             self.assertTrue((site / "guides/verify-your-solver.html").is_file())
+            self.assertIn('<td data-label="command"><code>solve</code></td>', (site / "index.html").read_text())  # on telephones
             asked = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\b(?:src|href)=[\"']?((?:https?:)?//[^\"' >]+)|"
                                r"@import[^;]*(?:https?:)?//|url\([\"']?(?:https?:)?//")
             found = [f"{path.relative_to(site)}: {match.group()}" for path in [*site.rglob("*.html"), *site.rglob("*.css")]
