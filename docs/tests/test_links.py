@@ -99,6 +99,13 @@ class NamesTest(unittest.TestCase):
                     missing.append(f"{relative(page, ROOT)}:{line_of(text, span.start())}: {span[0]}")
         self.assertEqual("\n".join(missing), "")
 
+    def test_architecture_names_every_folder_of_sources(self):
+        text = (ROOT / "docs/architecture.md").read_text()
+        folders = {file.relative_to(ROOT).parts[:2] for top in ["analytic", "solver", "convergence", "interfaces", "bench"]
+                   for file in (ROOT / top).glob("*/*") if file.suffix in (".cpp", ".hpp", ".py")}
+        self.assertGreater(len(folders), 30)
+        self.assertEqual(sorted("/".join(parts) for parts in folders if parts[1] != "tests" and f"`{'/'.join(parts)}/`" not in text), [])
+
     def test_one_solve_goes_through_few_files_that_exist(self):
         rows = re.findall(r"^\| (\d+) \| `([^`]+)` \|", (ROOT / "docs/one-solve.md").read_text(), re.M)
         self.assertEqual([int(number) for number, _ in rows], list(range(1, len(rows) + 1)))
