@@ -116,7 +116,8 @@ std::vector<Command> add_commands(CLI::App& app, std::string_view first_word, co
 }
 
 int run(int argc, char** argv, const Ranks& ranks) {
-  CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
+  CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared",
+               "slipstick"};
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
 
@@ -133,6 +134,7 @@ int run(int argc, char** argv, const Ranks& ranks) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) slipstick::convergence::require_known_options(app, argc, argv);
     std::ostringstream output;
     std::ostringstream errors;
     const int left = app.exit(error, output, errors);

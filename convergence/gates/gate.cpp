@@ -14,7 +14,7 @@
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/input/setting_key.hpp"
+#include "solver/input/misspelling.hpp"
 
 namespace slipstick::convergence {
 namespace {

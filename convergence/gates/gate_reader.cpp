@@ -13,6 +13,7 @@
 
 #include "convergence/gates/gate.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/misspelling.hpp"
 #include "solver/input/setting_key.hpp"
 #include "solver/input/toml_reader.hpp"
 

@@ -1,15 +1,17 @@
 #include "convergence/programs/output_options.hpp"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
+#include <span>
 #include <system_error>
 
 #include "solver/input/input_error.hpp"
-#include "solver/input/setting_key.hpp"
+#include "solver/input/misspelling.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
@@ -54,6 +56,16 @@ void require_outputs_apart(const CLI::App& command) {
   }
 }
 
+/// The long names of a command's options, with those of its groups.
+void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
+  for (const CLI::Option* const option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* const group : command.get_subcommands([](const CLI::App*) { return true; })) {
+    if (group->get_name().empty()) add_option_names(*group, names);
+  }
+}
+
 }  // namespace
 
 void require_input_kept(const std::string& option, const std::string& output,
@@ -91,13 +103,34 @@ void require_inputs_kept(const CLI::App& command) {
 void require_command(const CLI::App& app, int argc, const char* const* argv) {
   const std::string word = argc > 1 ? argv[1] : "";
   if (word.empty() || word.starts_with("-")) return;
-  std::vector<std::string> shown;
+  std::vector<std::string> shown{"--help", "--version"};
   for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_name() == word) return;
     if (!command->get_group().empty()) shown.emplace_back(command->get_name());
   }
   throw solver::InputError(word, fmt::format("is no command; the nearest is {}, slipstick --help lists all",
                                              solver::nearest_word(word, shown)));
+}
+
+void require_known_options(const CLI::App& app, int argc, const char* const* argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  const auto subcommands =
+      app.get_subcommands([&](const CLI::App* each) { return each->get_name() == first; });
+  const CLI::App* const command = subcommands.empty() ? &app : subcommands.front();
+  std::vector<std::string> known;
+  add_option_names(*command, known);
+  std::vector<std::string> unknown;
+  for (const char* const word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+    const std::string option = std::string(word).substr(0, std::string_view(word).find('='));
+    const std::size_t dashes = std::min(option.find_first_not_of('-'), option.size());
+    const std::string name = option.substr(dashes);
+    const bool is_long = dashes > 0 && name.size() > 1 && std::isalpha(static_cast<unsigned char>(name[0]));
+    if (!is_long || std::ranges::find(known, option) != known.end()) continue;
+    const std::string nearest = solver::nearest_word("--" + name, known);
+    unknown.push_back(fmt::format("{}: unknown option; the nearest is {}", option, nearest));
+  }
+  if (!unknown.empty())
+    throw solver::InputError(command->get_name(), fmt::format("{}", fmt::join(unknown, "\n  ")));
 }
 
 }  // namespace slipstick::convergence

@@ -34,4 +34,8 @@ auto running(const CLI::App* command, const std::shared_ptr<Request>& request, R
 /// --help.
 void require_command(const CLI::App& app, int argc, const char* const* argv);
 
+/// Throws InputError that names all options of the line that its command does not have, each with the nearest
+/// one. For lines that cannot be parsed: other complaints about them may follow from a misspelt option.
+void require_known_options(const CLI::App& app, int argc, const char* const* argv);
+
 }  // namespace slipstick::convergence

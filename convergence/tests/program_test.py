@@ -36,6 +36,16 @@ class Program(ProgramTest):
         for words in ((), ("frobnicate",), ("solve",), ("solve", "--no-such-option")):
             self.run_program(*words, code=2)
         self.run_program("slove", "scene.toml", code=2, says=("slove", "the nearest is solve"))
+        self.run_program("help", code=2, says="the nearest is --help")
+
+    def test_unknown_options_are_named_before_anything_is_missing(self):
+        for words, *says in ((("solve", "--halp"), "--halp", "the nearest is --help"),
+                             (("exact", "--momentratio", "0.5"), "--momentratio", "the nearest is --moment-ratio"),
+                             (("solve", "--jsn", "x", "--field=a.csv"), "--jsn", "--json", "--field:", "--fields"),
+                             (("--verson",), "--verson", "the nearest is --version")):
+            text = self.run_program(*words, code=2, says=says)
+            self.assertNotIn("required", text)
+        self.run_program("exact", "--twist", "-0.5", "--profile", code=2, says="--profile")
 
     def test_a_converged_answer_carries_its_moment(self):
         result = self.result(*solve("paper"))

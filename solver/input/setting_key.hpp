@@ -65,10 +65,4 @@ Range one_of(const Words<Value>& words) {
 /// A key's name in the table: step[3].moment is step.moment.
 std::string without_indices(const std::string& key);
 
-/// Edits (insertions, deletions, substitutions) that make one word of another: Levenshtein's distance.
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
-/// The known word that is closest to a misspelt one, the first of equals; empty where none is known.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
-
 }  // namespace slipstick::solver

@@ -7,16 +7,18 @@
 #include <cctype>
 #include <cstring>
 #include <map>
+#include <ranges>
 #include <sstream>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/misspelling.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-/// Edits that make a key look like a misspelling of another.
-constexpr std::size_t kMisspelling = 3;
+/// Unknown keys that one message lists, at most.
+constexpr std::size_t kMostListed = 20;
 /// Parts of a dotted key, at most. No key that is read has more than five; keys nest 256 deep at most.
 constexpr std::size_t kMaxKeyParts = 32;
 const std::string kLongKey = fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts);
@@ -143,14 +145,6 @@ void collect_leaves(const toml::table& table, const std::string& prefix, bool in
   }
 }
 
-std::vector<std::string> keys_of(const toml::table& table, const std::string& prefix = "") {
-  std::vector<Leaf> leaves;
-  collect_leaves(table, prefix, true, leaves);
-  std::vector<std::string> keys;
-  for (const Leaf& leaf : leaves) keys.push_back(leaf.key);
-  return keys;
-}
-
 /// The table that one part of a dotted path names, "name" or "name[index]": one without an index is made
 /// where it is missing. Null where something else stands there, or nothing.
 toml::table* table_below(toml::table& table, const std::string& part) {
@@ -166,18 +160,43 @@ SettingsText settings_of(const std::filesystem::path& file) {
 
 struct SceneReader::ReadKeys {
   toml::table root;
-  std::map<std::string, Range> keys;
-  std::set<std::string> known;
+  std::map<std::string, SettingKey> keys;
+  std::set<std::string> read;
 
-  const Range& range(const std::string& key) const {
+  const SettingKey& setting(const std::string& key) const {
     const auto found = keys.find(without_indices(key));
     if (found == keys.end()) throw std::logic_error(fmt::format("the table of keys has no {}", key));
     return found->second;
   }
   toml::node_view<toml::node> node(const std::string& key) {
-    if (!keys.empty()) range(key);
-    known.insert(key);
+    if (!keys.empty()) setting(key);
+    read.insert(key);
     return root.at_path(key);
+  }
+  bool has_below(const std::string& name) const {
+    const auto from = keys.lower_bound(name + ".");
+    return from != keys.end() && from->first.starts_with(name + ".");
+  }
+  /// Whether the table of keys has a key, a table of this name, or a key whose value holds it.
+  bool allows(const std::string& key) const {
+    const std::string name = without_indices(key);
+    if (has_below(name) || keys.contains(name)) return true;
+    for (std::size_t end = name.find('.'); end != std::string::npos; end = name.find('.', end + 1)) {
+      const std::string above = name.substr(0, end);
+      if (keys.contains(above) && !has_below(above)) return true;
+    }
+    return false;
+  }
+  /// All keys and the tables in which they are, or, without a table of keys, those that were read.
+  std::vector<std::string> names() const {
+    std::set<std::string> names;
+    for (const std::string& key : read) names.insert(without_indices(key));
+    for (const auto& [name, key] : keys) {
+      for (std::size_t end = name.find('.'); end != std::string::npos; end = name.find('.', end + 1))
+        names.insert(name.substr(0, end));
+      names.insert(name);
+    }
+    return {names.begin(), names.end()};
   }
 };
 
@@ -188,8 +207,9 @@ SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<st
 SceneReader::SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
                          const SettingKeys& keys)
     : file_(settings.file), toml_(new ReadKeys{parse(settings.text, settings.file.string()), {}, {}}) {
-  for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key.allowed);
+  for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key);
   for (const std::string& assignment : overrides) apply_override(assignment);
+  if (!keys.empty()) refuse_unless([this](const std::string& key) { return toml_->allows(key); });
 }
 
 void SceneReader::apply_override(const std::string& assignment) {
@@ -238,7 +258,7 @@ void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives
 }
 
 const Range& SceneReader::range_for(const std::string& key, const Range& range) const {
-  return range.contains ? range : toml_->range(key);
+  return range.contains ? range : toml_->setting(key).allowed;
 }
 
 std::string SceneReader::where(const std::string& key) const {
@@ -252,12 +272,7 @@ void SceneReader::fail(const std::string& key, const std::string& value, const s
   throw InputError(where(key), key, value, allowed);
 }
 
-/// Reports a misspelt key where one resembles the missing key.
 void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
-  for (const std::string& leaf : keys_of(toml_->root)) {
-    const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;
-    if (similar && !toml_->known.contains(leaf)) fail_unknown(leaf);
-  }
   const std::string parent = key.substr(0, key.rfind('.'));
   const auto found = toml_->root.at_path(parent);
   if (found && !found.is_table())
@@ -265,11 +280,30 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
   fail(key, "(missing)", allowed);
 }
 
-void SceneReader::fail_unknown(const std::string& key) const {
-  const auto found = toml_->root.at_path(key);  // not found where a quoted key holds a dot or a bracket
-  throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
-                                           found ? print(*found.node()) : "...",
-                                           nearest_word(key, {toml_->known.begin(), toml_->known.end()})));
+std::string SceneReader::why_unknown(const std::string& key) const {
+  const auto found = toml_->keys.find(without_indices(key));
+  if (found == toml_->keys.end()) return "unknown key; " + nearest_key(key, toml_->names());
+  const SettingKey& setting = found->second;
+  return setting.shapes.empty()
+             ? "unknown key with these values; its meaning: " + setting.meaning
+             : fmt::format("unknown key of this shape; it belongs to {}", fmt::join(setting.shapes, ", "));
+}
+
+void SceneReader::refuse_unless(const std::function<bool(const std::string& key)>& is_known) const {
+  std::vector<Leaf> unknown;
+  collect_leaves(toml_->root, "", true, unknown);
+  std::erase_if(unknown, [&](const Leaf& leaf) { return is_known(leaf.key); });
+  if (unknown.empty()) return;
+  std::ranges::stable_sort(unknown, {}, [](const Leaf& leaf) { return leaf.value->source().begin.line; });
+  std::vector<std::string> complaints;
+  for (const Leaf& leaf : unknown | std::views::take(kMostListed)) {
+    const std::string place = complaints.empty() ? "" : where(leaf.key) + ": ";
+    complaints.push_back(fmt::format("{}{} = {}: {}", place, leaf.key,
+                                     print(*leaf.value).substr(0, kMaxShown), why_unknown(leaf.key)));
+  }
+  if (unknown.size() > kMostListed)
+    complaints.push_back(fmt::format("and {} more unknown keys", unknown.size() - kMostListed));
+  throw InputError(where(unknown.front().key), fmt::format("{}", fmt::join(complaints, "\n  ")));
 }
 
 void SceneReader::fail_choice(const std::string& key, const std::string& word,
@@ -385,8 +419,10 @@ std::vector<std::string> SceneReader::assignments(const std::string& key) {
   const auto found = toml_->node(key);
   if (!found) return {};
   if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
-  for (const std::string& leaf : keys_of(*found.as_table(), key + ".")) toml_->known.insert(leaf);
   std::vector<Leaf> leaves;
+  collect_leaves(*found.as_table(), key + ".", true, leaves);
+  for (const Leaf& leaf : leaves) toml_->read.insert(leaf.key);
+  leaves.clear();
   collect_leaves(*found.as_table(), "", false, leaves);
   std::vector<std::string> assignments;
   for (const Leaf& leaf : leaves) assignments.push_back(fmt::format("{}={}", leaf.key, print(*leaf.value)));
@@ -407,9 +443,7 @@ std::string SceneReader::text_or(const std::string& key, const std::string& othe
 std::filesystem::path SceneReader::path(const std::string& key) { return file_.parent_path() / text(key); }
 
 void SceneReader::reject_unknown() const {
-  for (const std::string& leaf : keys_of(toml_->root)) {
-    if (!toml_->known.contains(leaf)) fail_unknown(leaf);
-  }
+  refuse_unless([this](const std::string& key) { return toml_->read.contains(key); });
 }
 
 }  // namespace slipstick::solver

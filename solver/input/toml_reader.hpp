@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,8 +23,9 @@ SettingsText settings_of(const std::filesystem::path& file);
 
 /// Reads the keys of a TOML file one by one, by dotted path; an index picks one of an array of tables, as in
 /// step[1].twist. The table of all keys has the allowed values; where these depend on other keys, the caller
-/// gives them. reject_unknown() reports keys that were not read. Throws InputError, and std::logic_error for
-/// a key that the table does not have, unless the table is empty.
+/// gives them. The constructor reports the keys that the table does not have, reject_unknown() those that
+/// were not read. Throws InputError, and std::logic_error for a key that the table does not have, unless the
+/// table is empty.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -83,7 +85,9 @@ class SceneReader {
 
  private:
   [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const;
-  [[noreturn]] void fail_unknown(const std::string& key) const;
+  /// Throws one InputError that names all keys of the file that are not known, in the order of the lines.
+  void refuse_unless(const std::function<bool(const std::string& key)>& is_known) const;
+  std::string why_unknown(const std::string& key) const;
   [[noreturn]] void fail_choice(const std::string& key, const std::string& word,
                                 const std::vector<std::string>& allowed) const;
   /// The range, or the table's where it is kAny.

@@ -154,6 +154,41 @@ class BadScene(ProgramTest):
             where = "scene.toml" if not settings else "" if old else "--set"
             self.refused(SCENE.replace(old, new, 1), where, *says, settings=settings)
 
+    def test_all_unknown_keys_are_named_before_anything_is_missing(self):
+        """The words that newcomers tried, each with the key that it stands for."""
+        text = """friction = 0.2
+[upper]
+shape = "sphere"
+diameter = 0.036
+E = 210e9
+nu = 0.3
+[upper.coating]
+thickness = 1e-4
+[contact]
+mu = 0.1
+[load]
+normal_load = 1000
+twist_deg = 1
+cycles = 3
+"""
+        pairs = {1: ("friction", "contact.friction"), 4: ("upper.diameter", "upper.radius (half of it)"),
+                 5: ("upper.E", "upper.young_modulus"), 6: ("upper.nu", "upper.poisson_ratio"),
+                 8: ("upper.coating.thickness", "upper.layer.thickness"), 10: ("contact.mu", "contact.friction"),
+                 12: ("load.normal_load", "load.normal"), 13: ("load.twist_deg", "load.twist (in rad"),
+                 14: ("load.cycles", "cycles (above all tables)")}
+        self.run_program("solve", self.write("scene.toml", text), code=2)
+        lines = self.run_program("solve", "scene.toml", code=2).splitlines()
+        self.assertEqual(len(lines), len(pairs), lines)
+        for (line, (unknown, known)), said in zip(pairs.items(), lines):
+            self.assertRegex(said, rf"scene\.toml:{line}: {unknown} = .*: unknown key; the nearest known one is ")
+            self.assertIn("known one is " + known, said)
+
+    def test_keys_after_the_tables_of_shapes_are_named_with_their_table(self):
+        """A shape in a table of its own ends [upper]: its modulus then stands in the table of the shape."""
+        shapes = SHORT_SCENE.replace("[upper]\n", "[[upper.shape]]\n")
+        self.refused(shapes, "upper.shape[0].young_modulus", "known one is upper.young_modulus",
+                     "upper.shape[0].poisson_ratio", "known one is upper.poisson_ratio")
+
     def test_two_rigid_bodies(self):
         rigid = SHORT_SCENE.replace("young_modulus = 210e9\npoisson_ratio = 0.3\n", "rigid = true\n")
         self.refused(rigid, "scene.toml", "lower.rigid = true", "false")
