@@ -115,7 +115,7 @@ int run_compare(const CompareRequest& request, std::ostream& text, Json& result)
   const ModuleAnswer answer = run_package_module("speed.compare", files);
   result = answer.result;
   text << answer.text;
-  write_option_file("--summary", request.summary, comparison_markdown(answer.rest));
+  append_option_file("--summary", request.summary, comparison_markdown(answer.rest));
   write_option_file("--junit", request.junit, comparison_junit(answer.rest));
   return answer.exit_code;
 }
@@ -148,7 +148,8 @@ RunCommand add_compare_command(CLI::App& app) {
   command->add_flag("--same-machine", request->same_machine, "whatever the files say, it is one machine");
   command->add_flag("--debug-library", request->debug_library,
                     "only Google Benchmark's library is a debug build, the programs are not");
-  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_option("--summary", request->summary,
+                      "add a Markdown table, the worst first, below 64 kB, to this file");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->footer(kCompareFooter);
   return [request](std::ostream& text, Json& result) { return run_compare(*request, text, result); };

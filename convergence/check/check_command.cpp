@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "convergence/check/check.hpp"
 #include "convergence/check/loop_request.hpp"
 #include "convergence/check/mesh_request.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/package_module.hpp"
+#include "convergence/results/markup.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -26,6 +29,8 @@ struct CheckRequest {
   std::vector<std::string> overrides;
   CheckOptions check;
   MeshOptions mesh;
+  std::string junit;
+  std::string summary;
 };
 
 /// Runs the module of the Python package that judges the requested file.
@@ -37,7 +42,7 @@ int run_judge(const char* module, const Json& request, std::ostream& text, Json&
   return answer.exit_code;
 }
 
-int run_check(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
+int judge_file(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
   if (request.check.twist && !std::isfinite(*request.check.twist)) {
     throw solver::InputError(fmt::format("--twist {}", *request.check.twist),
                              "allowed: a finite number, in rad");
@@ -73,6 +78,48 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
   result = to_json(check);
   text << check_text(check);
   return check.good() ? 0 : 1;
+}
+
+/// The verdict with its reason, and below it the text as a block of code.
+std::string check_markdown(const CheckRequest& request, const JunitCase& judged) {
+  std::string text = fmt::format("### {}: {} for {}\n\n{}\n\n", judged.type, markdown_text(request.field),
+                                 markdown_text(request.scene), markdown_text(judged.message));
+  bool begins = true;
+  for (const char c : as_utf8(plain_text(judged.shown + judged.details))) {
+    if (begins) text += "    ";
+    text += c;
+    begins = c == '\n';
+  }
+  return text + "\n";
+}
+
+/// Judges the file, and writes the verdict, or why there is none, for CI servers.
+int run_check(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
+  require_output("--junit", request.junit);
+  require_output("--summary", request.summary);
+  JunitCase judged{.suite = request.scene, .classname = "check", .name = request.field};
+  const auto write_reports = [&] {
+    write_option_file("--junit", request.junit, junit_text("slipstick check", {judged}));
+    append_option_file("--summary", request.summary, check_markdown(request, judged));
+  };
+  std::ostringstream shown;
+  int exit_code = 0;
+  try {
+    exit_code = judge_file(command, request, shown, result);
+  } catch (const std::exception& error) {
+    judged.verdict = CaseVerdict::error;
+    judged.type = "not judged";
+    judged.message = error.what();
+    write_reports();
+    throw;
+  }
+  text << shown.str();
+  judged.verdict = exit_code == 0 ? CaseVerdict::passed : CaseVerdict::failure;
+  judged.type = result.at("verdict").get<std::string>();
+  judged.message = result.at("why").get<std::string>();
+  (exit_code == 0 ? judged.shown : judged.details) = shown.str();
+  write_reports();
+  return exit_code;
 }
 
 }  // namespace
@@ -111,6 +158,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
                     "take the field's pressure as given: judge only its load, and the tractions under it");
   command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
+  command->add_option("--junit", request->junit, "write the verdict as JUnit's XML to this file");
+  command->add_option("--summary", request->summary, "add the verdict in Markdown to this file");
   MeshOptions& mesh = request->mesh;
   command->add_option(
       "--stick-slope", mesh.stick_slope,

@@ -99,7 +99,7 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
   result = gates_json(judgements);
   text << gates_text(judgements);
   write_option_file("--junit", request.junit, gates_junit(judgements));
-  write_option_file("--summary", request.summary, gates_markdown(judgements));
+  append_option_file("--summary", request.summary, gates_markdown(judgements));
   if (judgements.empty()) {
     throw solver::InputError(request.files.front(), "no gate ran; allowed: tables headed [[gate]]");
   }
@@ -119,7 +119,9 @@ RunCommand add_gate_command(CLI::App& app) {
       "--list", request->list, "list the gates with their files, quantities and bounds, and run none");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file")
       ->excludes(list);
-  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB")
+  command
+      ->add_option("--summary", request->summary,
+                   "add a Markdown table, the worst first, below 64 kB, to this file")
       ->excludes(list);
   command->add_option("--results", request->results,
                       "folder of the result files that gates name (default: the gate file's folder)");

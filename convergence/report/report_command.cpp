@@ -140,7 +140,7 @@ int make_pages(PageRequest request, const ReportRequest& words, std::ostream& te
   result = Json{{"pages", std::move(list)}};
   draw(folders, words);
   write_option_file("--junit", words.junit, junit_text("slipstick report", cases));
-  write_option_file(
+  append_option_file(
       "--summary", words.summary,
       markdown_with_table("### slipstick report\n\n", "| scene | verdict | why |", rows, "scenes"));
   return std::ranges::any_of(pages, [](const Page& page) { return page.headline.verdict() == "bad"; }) ? 1
@@ -187,7 +187,7 @@ RunCommand add_report_command(CLI::App& app) {
       "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5%; the page has the resulting "
       "uncertainty of each number");
   command->add_option("--junit", request->junit, "write the verdicts of scenes as JUnit's XML");
-  command->add_option("--summary", request->summary, "write the verdicts as a table in Markdown");
+  command->add_option("--summary", request->summary, "add the verdicts to this file as a table in Markdown");
   add_memory_option(*command, request->runs.memory_limit);
   request->runs.add_programs_to(*command);
   command

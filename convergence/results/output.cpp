@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -36,6 +37,16 @@ void require_output(const std::string& option, const std::string& path) {
 void write_option_file(const std::string& option, const std::string& path, const std::string& text) {
   if (path.empty()) return;
   naming(option, path, [&] { solver::write_whole_file(path, text); });
+}
+
+void append_option_file(const std::string& option, const std::string& path, const std::string& text) {
+  std::string all;
+  naming(option, path, [&] {
+    if (std::filesystem::is_regular_file(path))
+      all = solver::read_input_file(path, solver::kLargestJson, "a text file");
+  });
+  if (!all.empty() && !all.ends_with('\n')) all += '\n';
+  write_option_file(option, path, all + text);
 }
 
 std::string plain_text(std::string_view text) {

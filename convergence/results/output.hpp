@@ -15,6 +15,10 @@ void require_output(const std::string& option, const std::string& path);
 /// Throws InputError naming option and path where it cannot be written.
 void write_option_file(const std::string& option, const std::string& path, const std::string& text);
 
+/// Adds a text to the end of the file that an option names, as $GITHUB_STEP_SUMMARY needs it; a missing file
+/// is made. Otherwise as write_option_file().
+void append_option_file(const std::string& option, const std::string& path, const std::string& text);
+
 /// The message of an exception; where memory, threads or processes ran out also what to do.
 std::string failure_text(const std::exception& error);
 

@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree
 from pathlib import Path
 from unittest.mock import patch
 
@@ -165,6 +166,25 @@ class Program(ProgramTest):
         self.assertIsNone(result["peak_pressure_error"])
         self.assertIsNone(result["exact"]["peak_pressure"])
         self.assertIn("no finite peak", result["peak_pressure_error_reason"])
+
+    def test_check_writes_reports_for_ci(self):
+        """A field that is good, bad, or cannot be read; a summary is added to what the file has."""
+        Path("summary.md").write_text("# Earlier step")
+        field = "contact-64-0.9.csv"
+        for words, code, verdict, tag in ((("--set", "load.moment_ratio=0.9"), 0, "good", None),
+                                          (("--set", "load.moment_ratio=0.8"), 1, "bad", "failure"),
+                                          (("--set", "load.moment_ratio=2"), 2, "not judged", "error")):
+            self.run_program(*check(field, *words, "--junit", "check.xml", "--summary", "summary.md"), code=code)
+            case, = xml.etree.ElementTree.parse("check.xml").getroot().iter("testcase")
+            self.assertTrue(case.get("name").endswith(field))
+            self.assertEqual([child.tag for child in case if child.tag != "system-out"], [tag] if tag else [])
+            if tag:
+                self.assertEqual(case.find(tag).get("type"), verdict)
+                self.assertIn("moment", case.find(tag).get("message"))
+            self.assertIn(f"\n### {verdict}: ", Path("summary.md").read_text())
+        self.assertTrue(Path("summary.md").read_text().startswith("# Earlier step\n### good: "))
+        self.assertIn("\n      FAILS            moment_error ", Path("summary.md").read_text())
+        self.run_program(*check(field, "--junit", "no/folder/x.xml"), code=2, says="--junit no/folder/x.xml")
 
     def test_report_draws_a_page_for_each_scene(self):
         scenes = [str(SCENES / "mindlin.toml"), str(SCENES / "honed_surface.toml")]

@@ -15,8 +15,8 @@ _slipstick() {
       "solve --program" | "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
       "solve "*) [[ $current != -* ]] || words="--help --set --program --allow-programs --model --accuracy --accuracy-of --uncertain --plan --ranks --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "check --columns" | "check --twist" | "check --tolerance" | "check --stick-slope" | "check --normal-stiffness" | "check --held-at" | "check --read-as" | "check --json") return ;;
-      "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --stick-slope --normal-stiffness --held-at --read-as --json --quiet" ;;
+      "check --columns" | "check --twist" | "check --tolerance" | "check --junit" | "check --summary" | "check --stick-slope" | "check --normal-stiffness" | "check --held-at" | "check --read-as" | "check --json") return ;;
+      "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --junit --summary --stick-slope --normal-stiffness --held-at --read-as --json --quiet" ;;
       "law --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "law --profile" | "law --write" | "law --prefix" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
       "law "*) [[ $current != -* ]] || words="--help --set --profile --write --prefix --error --table-error --element-error --elements --limit-loads --json --quiet" ;;

@@ -302,6 +302,14 @@ class Reports(MadeGates):
         self.assertIsNone(rows["unreadable"]["value"])
         self.assertIn("scene", rows["unreadable"]["value_reason"])
 
+    def test_a_summary_is_added_to_its_file(self):
+        """As a later command of one step writes $GITHUB_STEP_SUMMARY."""
+        Path("summary.md").write_text("before\n")
+        for _ in range(2):
+            _, _, markdown, _ = self.reports({"x": 0}, gate("x", below=1), 0)
+        self.assertTrue(markdown.startswith("before\n### 1 gate: 1 passed\n"))
+        self.assertEqual(markdown.count("### 1 gate: 1 passed"), 2)
+
     def test_markdown_stays_below_64_kb_with_the_worst_first(self):
         """Gates that fail by the factor 2 + i, in an order that hides the worst."""
         order = [i * 7919 % 1000 for i in range(1000)]
