@@ -45,7 +45,7 @@ def remembered(page):
     answer, judged = page["answer"], _judged(page)
     gap, time, _ = _sums(answer)
     shown = [row for row in page["numbers"] if row is judged or (row["key"] == "stick_radius" and row["error"] is not None)]
-    tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'what mesh and steps leave open'} of the {row['words']}")
+    tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'estimated error (mesh, steps)'} of the {row['words']}")
              for row in shown]
     if gap is not None:
         tiles.append((sci(gap), f"gap in {law(answer)}, over the energy"))
@@ -78,7 +78,7 @@ def index(pages):
                      *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error_with_parts(judged))),
                      "–" if gap is None else sci(gap), "–" if "program" in answer else f"{applications:.0f}",  # another program counts its own
                      str(len(answer.get("steps") or [0])), "×".join(map(str, answer["cells"])), seconds(time)])
-    return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or what mesh and steps leave open",
+    return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or its estimate",
                   "gap / energy", "applica&shy;tions", "steps", "cells", "time, s"], body)
 
 

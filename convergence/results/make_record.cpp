@@ -128,8 +128,9 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
         resolution.stick_width, uncertain);
   }
   if (std::isinf(path)) {
-    return "what the length of the steps leaves open is not known, since few cells or more parts of the "
-           "steps do not carry these loads; compare with a larger solver.substeps";
+    return "the error by the length of the steps is not known: its estimate solves on few cells and with "
+           "more "
+           "parts of the steps, which do not carry these loads; compare with a larger solver.substeps";
   }
   if (path > mesh) {
     return fmt::format(

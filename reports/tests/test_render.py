@@ -85,7 +85,7 @@ class WholePage(unittest.TestCase):
         first = self.page[self.page.index("<main"):self.page.index("<section")]
         for words in ("✓ All is well", "<strong>Gates:</strong> 1 of 1 pass", "a &lt; b", "page of commit 0123456789abcdef:",
                       "hard certified: 2 before, 1 now", "<dd>0.3\u00a0%</dd><dt>error of the twist",
-                      "<dd>2\u00a0%</dd><dt>what mesh and steps leave open of the stick radius", "<dd>2.0×10⁻⁹</dd>", "<dd>0.125\u00a0s</dd>",
+                      "<dd>2\u00a0%</dd><dt>estimated error (mesh, steps) of the stick radius", "<dd>2.0×10⁻⁹</dd>", "<dd>0.125\u00a0s</dd>",
                       "16×16 cells, M/M<sub>lim</sub>&nbsp;=&nbsp;0.9", 'id="twist"'):
             self.assertIn(words, first)
 
