@@ -129,8 +129,7 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
   }
   if (std::isinf(path)) {
     return "the error by the length of the steps is not known: its estimate solves on few cells and with "
-           "more "
-           "parts of the steps, which do not carry these loads; compare with a larger solver.substeps";
+           "more parts of the steps, which do not carry these loads; compare with a larger solver.substeps";
   }
   if (path > mesh) {
     return fmt::format(
