@@ -77,6 +77,12 @@ Json torsion_json(const solver::Scene& scene) {
   return value == 0.0 ? Json() : Json{{keys[load.index()], value}};
 }
 
+/// The sphere's radius, m; null: the indenter is another one, or several.
+Json sphere_json(const solver::Scene& scene) {
+  const solver::Surface& surface = scene.surfaces[0];
+  return scene.surfaces.size() == 1 && surface.shape == solver::Shape::sphere ? Json(surface.radius) : Json();
+}
+
 Json body_json(const solver::Material& body) {
   return {{"shear_compliance", 2.0 * (1.0 + body.poisson_ratio) / body.young_modulus},
           {"poisson_ratio", body.poisson_ratio}};
@@ -132,6 +138,7 @@ Json mesh_request(const solver::Scene& scene, const std::vector<std::string>& ov
           {"half_spaces", !is_coated(scene)},
           {"upper", body_json(scene.upper)},
           {"lower", body_json(scene.lower)},
+          {"sphere", sphere_json(scene)},
           {"friction", friction_json(law)},
           {"exact", exact_json(scene)},
           {"first_loading", first_loading_json(scene)},

@@ -251,7 +251,7 @@ def _other_kernel(examined: Examined, request: Request, solve: Solve, wrong: set
     kernels = judge.kernels([examined.values], KERNELS)[0]
     motions = {name: judge.rigid(kernels, kernels.displacement(other, **mistake))
                for name, (other, mistake) in _hypotheses(examined, request, kernels).items()}
-    reported = None if twist is None or examined.reported is None else examined.reported + examined.right.twist - examined.right_twist
+    reported = None if twist is None else examined.reported_of_half_spaces
 
     def off(other: Motion) -> float:
         return 0.0 if reported is None else abs(reported / other.twist - 1)
@@ -301,10 +301,10 @@ def _fitted_spring(examined: Examined, kernels: Kernels) -> float:
     turn = np.concatenate([-x[:, 1], x[:, 0]])
     columns = [np.concatenate([one, zero]), np.concatenate([zero, one]), -own.T.ravel()]
     wanted = u.T.ravel()
-    if examined.reported is None:
+    twist = examined.reported_of_half_spaces
+    if twist is None:
         columns.append(turn)
     else:
-        twist = examined.reported + examined.right.twist - examined.right_twist
         if twist / examined.motion.twist - 1 < _OF_BODIES:
             return 0.0
         wanted = wanted - twist * turn

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from .causes import Solve, causes_of
+from .curvature import of_sphere
 from .field import ContactField
 from .measures import Bodies, Law
 from .read import read
@@ -66,8 +67,8 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     law = Law(request["friction"])
     single = request["steps"] == 1 and request["half_spaces"]
     bodies = Bodies.of(request["upper"], request["lower"], springs.get("layer.tangential_compliance", 0.0)) if single else None
-    held = _held(request, right)
-    examined = examine(field, right, others, law, bodies, request["twist"], held, request["tolerance"])
+    held, curved = _held(request, right), _curved(request, right)
+    examined = examine(field, right, others, law, bodies, request["twist"], held, curved, request["tolerance"])
     if springs and request["exact"] is not None:
         bare = exact_answer(request["exact"])
         examined.notes.append(f"springs change the twist by {100 * (right.twist / bare.twist - 1):+.2g} % and the contact radius by "
@@ -75,6 +76,10 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
                               f"{percent(examined.allowances['twist'])} of the twist")
     if held:
         examined.notes.append(f"bodies held at {request['held_at'][0]:g} m turn {percent(held / right.twist)} less")
+    if examined.explained:
+        examined.notes.append(f"a sphere turns {percent(curved)} further than the half-space in its place: this explains "
+                              f"{percent(examined.explained)} of the twist, which is {percent(examined.reported / examined.right_twist - 1)} "
+                              "too high for half-spaces")
     return examined, notes
 
 
@@ -88,6 +93,15 @@ def _held(request: Mapping[str, Any], right: Right) -> float:
                          "finite factor")
     compliance = request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"]
     return float(factor * right.moment * compliance / (4 * np.pi * radius**3))
+
+
+def _curved(request: Mapping[str, Any], right: Right) -> float:
+    """How much further the sphere turns than the half-space in its place, over the twist of both bodies; zero for other bodies and
+    for histories."""
+    if not (request["sphere"] and request["exact"] and request["half_spaces"] and request["steps"] == 1):
+        return 0.0
+    share = request["upper"]["shear_compliance"] / (request["upper"]["shear_compliance"] + request["lower"]["shear_compliance"])
+    return share * of_sphere(right.contact_radius / request["sphere"], request["exact"]["moment_ratio"])
 
 
 def _reading(words: list[str]) -> dict[str, Any]:
@@ -196,7 +210,7 @@ def _text(result: Mapping[str, Any], examined: Examined) -> str:
     text += "".join(fill(part, 118, initial_indent="    ", subsequent_indent="      ") + "\n" for part in rest)
     text += line("field", f"{result['field']}: {result['rows']} {result['kind']}, {result['faces_across']:.3g} across the radius")
     text += "".join(line("" if k else "read as", choice) for k, choice in enumerate(result["choices"]))
-    text += line("compared with", "; ".join([result["right_answer"], *examined.notes]))
+    text += "".join(line("" if k else "compared with", note) for k, note in enumerate([result["right_answer"], *examined.notes]))
     for name, value, unit, right in (("normal load", result["normal_load"], "N", examined.right.normal_load),
                                      ("contact radius", result["contact_radius"], "m", examined.right.contact_radius),
                                      ("moment", result["moment"], "N m", examined.right.moment),

@@ -46,12 +46,14 @@ _ORDER = ("coverage", "normal_load", "contact_radius", "pressure", "moment", "fo
 
 @dataclass(frozen=True)
 class Judged:
-    """A number and the largest size that is allowed, which NaN exceeds. `right`: the largest one of right answers on the mesh."""
+    """A number and the largest size that is allowed, which NaN exceeds. `right`: the largest one of right answers on the mesh.
+    without: words on a part that is taken off."""
 
     quantity: str
     value: float
     allowed: float
     right: float
+    without: str = ""
 
     @property
     def holds(self) -> bool:
@@ -63,7 +65,7 @@ class Judged:
         text = _WRONG[self.quantity].format(off=f"{percent(self.value)} too {low}", part=percent(self.value),
                                             low="small" if self.value < 0 else "large", degrees=f"{self.value:.2g} degrees")
         allowed = f"{self.allowed:.2g} degrees" if self.quantity == "slip_direction" else percent(self.allowed)
-        return f"{text} (allowed on this mesh: {allowed})"
+        return f"{text}{self.without} (allowed on this mesh: {allowed})"
 
 
 @dataclass
@@ -81,11 +83,19 @@ class Examined:
     judged: list[Judged]
     reported: Optional[float]
     right_twist: float
+    explained: float
     across: float
     notes: list[str] = with_default(default_factory=list)
 
     def number(self, quantity: str) -> Optional[Judged]:
         return next((item for item in self.judged if item.quantity == quantity), None)
+
+    @property
+    def reported_of_half_spaces(self) -> Optional[float]:
+        """The reported twist as half-spaces would have it: without what curvature and ends of the bodies explain, rad."""
+        if self.reported is None:
+            return None
+        return self.reported - self.explained * self.right_twist + self.right.twist - self.right_twist
 
     @property
     def wrong(self) -> list[Judged]:
@@ -112,14 +122,15 @@ def percent(part: float) -> str:
 
 
 def examine(field: ContactField, right: Right, others: Mapping[str, Right], law: Law, bodies: Optional[Bodies],
-            reported: Optional[float], held: float, tolerance: Optional[float]) -> Examined:
+            reported: Optional[float], held: float, curved: float, tolerance: Optional[float]) -> Examined:
     """Measures a field and the errors that its mesh explains:
 
     1. The right answer is put on the mesh in each way that programs do it, and so are `others`, right answers of other methods.
     2. All of them and the field are measured in the same way.
     3. Twice the worst of the right ones is allowed, or `tolerance` for errors of loads, fields and twist.
 
-    reported: the twist that the program reported, rad; held: the part of the right one that is missing because bodies end, rad.
+    reported: the twist that the program reported, rad; held: the part of the right one that is missing because bodies end, rad;
+    curved: how much further a sphere turns than the half-space in its place, over the right twist. Any part of it is allowed.
     """
     values = np.column_stack([field.pressure, field.traction])
     patches = patches_of(field, right.fields(field.points)[:, 0])
@@ -138,18 +149,22 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     loaded = reference[:, 0] > 0
     across = right.contact_radius / np.sqrt(patches.weights @ loaded / max(1, np.count_nonzero(loaded)))
     found["coverage"], worst["coverage"] = _coverage(field, judge, ways, across)
-    right_twist = right.twist - held
+    right_twist, explained = right.twist - held, 0.0
     if reported is not None:
-        found["twist"] = reported / right_twist - 1
+        off = reported / right_twist - 1
+        explained = float(np.clip(off, 0, curved))
+        found["twist"] = off - explained
         worst["twist"] = worst["twist_of_tractions"]
     allowances = {name: _FLOORS[name] + _WHOLE_MESH * worst[name] for name in _FLOORS}
     unsure = found.pop("unsure_direction", 0.0) * min(1.0, allowances["stick_motion"] / max(found.get("stick_motion", 0.0), 1e-300))
     allowances["slip_direction"] += unsure
     if tolerance is not None:
         allowances = {name: np.degrees(tolerance) if name == "slip_direction" else tolerance for name in _FLOORS}
-    judged = [Judged(name, value, allowances[name], worst[name]) for name, value in found.items()]
+    without = {"twist": f" after the {percent(explained)} that a sphere turns further"} if explained else {}
+    judged = [Judged(name, value, allowances[name], worst[name], without.get(name, "")) for name, value in found.items()]
     motion = None if kernels[0] is None else judge.motion(kernels[0])
-    return Examined(field, right, values, patches, judge, kernels[0], motion, allowances, judged, reported, right_twist, across)
+    return Examined(field, right, values, patches, judge, kernels[0], motion, allowances, judged, reported, right_twist, explained,
+                    across)
 
 
 def _carrying(judge: Judge, values: Array) -> Array:
