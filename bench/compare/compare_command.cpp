@@ -59,7 +59,9 @@ Json rules_of(const CompareRequest& request) {
 }
 
 std::string read_timings(const std::string& file) {
-  constexpr const char* kAllowed = "what a Google Benchmark program writes with --benchmark_format=json";
+  constexpr const char* kAllowed =
+      "what Google Benchmark (--benchmark_format=json), pytest-benchmark (--benchmark-json) or hyperfine "
+      "(--export-json) writes";
   std::string text = solver::read_input_file(file, solver::kLargestJson, kAllowed);
   if (as_utf8(text) != text) {
     throw InputError(file, fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
@@ -127,8 +129,8 @@ constexpr const char* kCompareFooter = R"(Example:
     solve/256  61.2 ms   73.4 ms     1.199  1.187 to 1.212  slower (p 3e-06)
     solve/128  14.1 ms   14.2 ms     1.004  0.997 to 1.011  same
   2 benchmarks: 1 same, 1 slower
-Both files are what Google Benchmark writes (--benchmark_out=FILE), with 10 repetitions or so. Run the two builds
-in turn, on an idle machine.
+Both files are of Google Benchmark (--benchmark_out=FILE), pytest-benchmark (--benchmark-json=FILE) or hyperfine
+(--export-json FILE), with 10 repetitions or so. Run the two builds in turn, on an idle machine.
 Exit code 0: nothing is slower; 1: a benchmark is slower, or fails in the new file alone; 2: it could not be judged:
 a benchmark is in one file only, failed before, has too few repetitions or is as much slower as counts without being
 so significantly; or the machines differ, were loaded, or the builds are debug builds: then no time is judged.)";
@@ -138,7 +140,7 @@ so significantly; or the machines differ, were loaded, or the builds are debug b
 RunCommand add_compare_command(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
   CLI::App* const command =
-      app.add_subcommand("compare", "Compare two files of Google Benchmark: is anything slower?");
+      app.add_subcommand("compare", "Compare two files of benchmarks' times: is anything slower?");
   command->add_option("base", request->base, "JSON of the build to compare with")->required();
   command->add_option("new", request->now, "JSON of the build in question")->required();
   command->add_option("--effect", request->effect, "smallest change that counts, as 10% or 0.10")

@@ -60,6 +60,45 @@ class TimingsTest(unittest.TestCase):
         read, = benchmarks(r'{"name": "a \"NaN, -inf\\", "real_time": 1, "cpu_time": 1, "flops": NaN}')
         self.assertEqual((read.name, read.counters), ('a "NaN, -inf\\', {}))
 
+    def test_reads_pytest_benchmark(self):
+        """Shortened from a file of its version 5; rounds that were not saved are no repetitions."""
+        text = json.dumps({
+            "machine_info": {"node": "vm", "cpu": {"count": 2, "brand_raw": "AMD EPYC", "l3_cache_size": 1048576}},
+            "commit_info": {}, "version": "5.2.0", "benchmarks": [
+                {"name": "test_few", "fullname": "a.py::test_few", "stats": {"rounds": 3, "median": 2e-3, "data": [2e-3, 1e-3, 3e-3]}},
+                {"name": "test_many", "fullname": "a.py::test_many", "stats": {"data": [1e-3 + 1e-6 * i for i in range(3001)]}},
+                {"name": "test_few", "fullname": "a.py::test_few", "stats": {"median": 1e-3}}]})
+        read = timings.parse(text, "file.json")
+        self.assertEqual((read.host_name, read.cpus, read.names_machine), ("vm", 2, True))
+        few, many, unsaved = read.benchmarks
+        self.assertEqual((few.name, few.real, few.has_times()), ("a.py::test_few", [2e-3, 1e-3, 3e-3], True))
+        self.assertEqual((unsaved.name, unsaved.has_times()), ("a.py::test_few #2", False))
+        self.assertEqual(len(many.real), 30)  # neighbours together, none left out
+        self.assertEqual(many.real, sorted(many.real))
+        self.assertAlmostEqual(many.real[0], 1e-3 + 49.5e-6, delta=1e-9)
+        self.assertAlmostEqual(many.real[-1], 1e-3 + 2950e-6, delta=1e-6)
+        for spoil, says in ((lambda t: t["benchmarks"][0].pop("stats"), "benchmarks[0].stats"),
+                            (lambda t: t["benchmarks"][0]["stats"].update(data=["1"]), "stats.data"),
+                            (lambda t: t["machine_info"].update(node=3), "machine_info.node")):
+            tree = json.loads(text)
+            spoil(tree)
+            with self.assertRaises(InputError) as refused:
+                timings.parse(json.dumps(tree), "file.json")
+            self.assertIn(says, str(refused.exception))
+
+    def test_reads_hyperfine_which_names_no_machine(self):
+        text = json.dumps({"results": [
+            {"command": "sleep 0.01", "mean": 0.0144, "user": 8e-4, "times": [0.0149, 0.0170], "exit_codes": [0, 0]},
+            {"command": "true", "times": [0.0, 1e-3]}]})
+        read = timings.parse(text, "file.json")
+        sleep, true = read.benchmarks
+        self.assertEqual((sleep.name, sleep.real, sleep.has_times()), ("sleep 0.01", [0.0149, 0.0170], True))
+        self.assertIn("repetition 1 is 0", true.error)
+        other = timings.parse(text.replace("0.0149", "0.0150"), "other.json")
+        for same_machine in (False, True):
+            found = compare.compare(read, other, compare.Rules(same_machine=same_machine)).obstacles
+            self.assertEqual([] if same_machine else [True], ["--same-machine" in each for each in found])
+
     def test_failures_skips_and_times_that_are_none_say_why(self):
         failed, skipped = benchmarks('{"name": "a", "error_occurred": true, "error_message": "disagrees", "real_time": 0.0}',
                                      '{"name": "b", "skipped": true, "skip_message": "no GPU"}')

@@ -82,7 +82,9 @@ def find_obstacles(base: Timings, now: Timings, rules: Rules) -> list[str]:
     found = []
     paired = are_paired(base, now)
     differences = _machine_differences(base, now)
-    if differences and not rules.same_machine and not paired:
+    if not (base.names_machine and now.names_machine) and not rules.same_machine:
+        found.append("a file of hyperfine does not say on which machine it was made (if it is one machine: --same-machine)")
+    elif differences and not rules.same_machine and not paired:
         found.append(f"the machines differ: {'; '.join(differences)} (if it is one machine: --same-machine)")
     for file in (base, now):
         reasons = (_debug_build(file, rules), _load(file), "" if paired else _waiting(file))
