@@ -22,18 +22,18 @@ def _error(row):
     return _part(row["error"])
 
 
-def _error_with_parts(row):
+def error_with_parts(row):
     return _error(row) + (f" (mesh {_part(row['mesh'])}, steps {_part(row['path'])})" if row["path"] and row["mesh"] is not None else "")
 
 
-def _judged(page):
+def judged_number(page):
     """The row of the number that the page is judged by."""
     number = page.get("cost", {}).get("number")
     known = [row for row in page["numbers"] if row["error"] is not None]
     return next((row for row in known if row["key"] == number), known[0] if known else None)
 
 
-def _sums(answer):
+def sums(answer):
     """The gap, the seconds and the applications of a solve; of a history the worst gap and the sums."""
     if history := answer.get("history"):
         return history["worst_gap"], history["seconds"], history["operator_applications"]
@@ -42,8 +42,8 @@ def _sums(answer):
 
 def remembered(page):
     """The headline numbers, each with its name, and the object to which they refer."""
-    answer, judged = page["answer"], _judged(page)
-    gap, time, _ = _sums(answer)
+    answer, judged = page["answer"], judged_number(page)
+    gap, time, _ = sums(answer)
     shown = [row for row in page["numbers"] if row is judged or (row["key"] == "stick_radius" and row["error"] is not None)]
     tiles = [(_error(row), f"{'error' if row['basis'] == 'exact' else 'estimated error (mesh, steps)'} of the {row['words']}")
              for row in shown]
@@ -54,7 +54,7 @@ def remembered(page):
     return tiles, Markup("{} cells{}").format("×".join(map(str, answer["cells"])), load)
 
 
-def _first_sentence(text):
+def first_sentence(text):
     """The first sentence of the comment that opens a scene file."""
     lines = itertools.takewhile(lambda line: line.startswith("#"), text.splitlines())
     return " ".join(line[1:].strip() for line in lines).split(". ")[0].rstrip(".")
@@ -64,8 +64,8 @@ def index(pages):
     """A row for each page, (folder, page): what it shows, its judged number, its work."""
     body = []
     for folder, page in pages:
-        answer, judged = page["answer"], _judged(page)
-        gap, time, applications = _sums(answer)
+        answer, judged = page["answer"], judged_number(page)
+        gap, time, applications = sums(answer)
         picture = Markup('<a href="{0}/index.html"><img src="{0}/figures/answer.svg" width="260" loading="lazy" alt="slip and stick, '
                          'tractions, pressure of {1}"></a>').format(folder, page["scene"]["name"])
         checks = page["headline"]["counts"]["checks"]
@@ -73,9 +73,9 @@ def index(pages):
         said = Markup("; ").join(Markup("{}: {}").format(what, typeset(line)) for what, line in page["headline"]["lines"]
                                  if checks[what] == worst)
         body.append([Markup('<a href="{}/index.html">{}</a>').format(folder, page["scene"]["name"]), picture,
-                     _first_sentence(page["scene"]["text"]),
+                     first_sentence(page["scene"]["text"]),
                      "✓ good" if verdict == "good" else Markup("{}: {}").format({"open": "○ open", "bad": "✗ bad"}[verdict], said),
-                     *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error_with_parts(judged))),
+                     *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), error_with_parts(judged))),
                      "–" if gap is None else sci(gap), "–" if "program" in answer else f"{applications:.0f}",  # another program counts its own
                      str(len(answer.get("steps") or [0])), "×".join(map(str, answer["cells"])), seconds(time)])
     return Table(["scene", "the contact", "what it shows", "verdict", "judged by", "value", "error, or its estimate",

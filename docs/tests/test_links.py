@@ -156,6 +156,18 @@ class GlossaryTest(unittest.TestCase):
         self.assertEqual([name for name, term in zip(names, terms) if len(term.split()) > 110], [])
 
 
+class GalleryTest(unittest.TestCase):
+    def test_has_every_scene_with_its_picture_and_its_first_sentence(self):
+        gallery = (ROOT / "docs/gallery.md").read_text()
+        for scene in (ROOT / "convergence/scenes").glob("*.toml"):
+            with self.subTest(scene=scene.stem):
+                row = re.search(rf"^\| !\[.*?\]\(gallery/{scene.stem}\.png\) \| \*\*`{scene.stem}`\*\*: (.*?) \|", gallery, re.M)
+                self.assertTrue(row)
+                comment = " ".join(re.match(r"(#.*\n)+", scene.read_text())[0].replace("\n#", "").lstrip("# ").split())
+                self.assertTrue(comment.startswith(row[1]), comment)
+                self.assertIn(row[1][-1], ".:")
+
+
 @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "Matplotlib is not installed")
 class SketchTest(unittest.TestCase):
     def test_is_the_one_that_its_script_draws(self):
