@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/elliptic_series.hpp"
@@ -92,6 +94,7 @@ class Hertz final : public Profile {
     return squared_modulus(c) * complete_elliptic(c.ratio).d;
   }
   double twist_slope(StickRadius c) const override { return complete_elliptic(c.ratio).e; }
+  double punch_density(StickRadius s) const override { return s.ratio; }
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 64 / (3 * pi * pi),
@@ -139,6 +142,7 @@ class Cone final : public Profile {
            (log * series::sum(kLower.log, x) + series::sum(kLower.constant, x));
   }
   double twist_slope(StickRadius c) const override { return complete_elliptic(c.ratio).k; }
+  double punch_density(StickRadius) const override { return 1; }
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 16 / (pi * pi),
@@ -198,6 +202,7 @@ class FlatPunch final : public Profile {
     const CompleteElliptic elliptic = complete_elliptic(c.ratio);
     return elliptic.k - elliptic.d;  // B
   }
+  double punch_density(StickRadius) const override { return 0; }
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 16 / (3 * pi * pi),
@@ -227,6 +232,8 @@ const Profile& lasting() {
 }
 
 }  // namespace
+
+double Profile::punch_density(StickRadius) const { return std::numeric_limits<double>::quiet_NaN(); }
 
 double Profile::bonded_traction(double radius) const {
   return edge() == 0 ? 0 : 2 / pi * edge() * radius / std::sqrt((1 - radius) * (1 + radius));

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace slipstick::analytic {
 
@@ -72,6 +73,12 @@ class Profile {
   /// dM/dphi over G a_s^3, the stiffness of a bonded flat punch of the stick radius (half-spaces: Reissner
   /// and Sagoci 1944).
   virtual double bonded_stiffness(StickRadius) const { return 16.0 / 3; }
+  /// g(s) of the pressure as a sum of flat punches (Sneddon 1965),
+  ///   p(r)/p0 = integral_r^1 g(s)/sqrt(s^2 - r^2) ds + (2/pi) H(1)/sqrt(1 - r^2).
+  /// NaN: only a bound of the traction is known.
+  virtual double punch_density(StickRadius s) const;
+  /// Radii in (0, 1), rising, at which H' and g are not smooth, or fall steeply from there on.
+  virtual std::vector<double> kinks() const { return {}; }
   /// None: that of half-spaces, which cycle.hpp has by integrals of H.
   virtual std::optional<SlipPart> slip_part(StickRadius) const { return std::nullopt; }
 

@@ -92,6 +92,12 @@ LoadingHistory::Branch LoadingHistory::branch(std::size_t index) const {
   return {.weight = std::copysign(2, change), .amplitude = std::abs(change) / 2};
 }
 
+std::vector<LoadingHistory::Branch> LoadingHistory::branches() const {
+  std::vector<Branch> list;
+  for (std::size_t i = 0; i <= turning_points_.size(); ++i) list.push_back(branch(i));
+  return list;
+}
+
 CycleState LoadingHistory::state() const {
   const double moment = moment_ratio_ * profile_->moment_limit();
   CycleState state{.moment_ratio = moment_ratio_,
@@ -100,8 +106,7 @@ CycleState LoadingHistory::state() const {
                    .stick_ratio = 1,
                    .tangent_stiffness = 0,
                    .dissipated = lost_in_closed_loops_};
-  for (std::size_t i = 0; i <= turning_points_.size(); ++i) {
-    const auto [weight, amplitude] = branch(i);
+  for (const auto& [weight, amplitude] : branches()) {
     const TorsionState loaded = from_moment_ratio(amplitude, *profile_);
     state.twist += weight * slip_twist(loaded, *profile_);
     state.dissipated += std::abs(weight) * energy_lost_per_cycle(loaded, *profile_) / 4;
@@ -113,10 +118,8 @@ CycleState LoadingHistory::state() const {
 
 double LoadingHistory::traction(double radius) const {
   double sum = 0;
-  for (std::size_t i = 0; i <= turning_points_.size(); ++i) {
-    const auto [weight, amplitude] = branch(i);
+  for (const auto& [weight, amplitude] : branches())
     sum += weight * analytic::traction(from_moment_ratio(amplitude, *profile_), radius, *profile_);
-  }
   return sum;
 }
 

@@ -48,12 +48,15 @@ class LoadingHistory {
   /// The reversals in memory, the oldest and farthest first, as M/M_lim.
   const std::vector<double>& turning_points() const { return turning_points_; }
 
- private:
   /// The state on a branch is the state at its start plus `weight` times the first loading to `amplitude`.
   struct Branch {
     double weight;
     double amplitude;
   };
+  /// All branches: first loadings whose sum, with these weights, is the state.
+  std::vector<Branch> branches() const;
+
+ private:
   Branch branch(std::size_t index) const;
 
   bool turns_towards(double moment_ratio) const;

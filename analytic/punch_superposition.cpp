@@ -164,6 +164,18 @@ class Superposition : public Profile {
              return flat_punch_profile().twist_slope(front(punch));
            });
   }
+  double punch_density(StickRadius s) const override {
+    const double beyond_flat = distance_to_flat(s);
+    return beyond_flat > 0 ? weight(s.ratio, s.complement, beyond_flat) : 0;
+  }
+  std::vector<double> kinks() const override {
+    if (shape_.flat > 0) return {shape_.flat};
+    constexpr double kGentle = 4;  // powers of e over which a panel follows x^growth
+    std::vector<double> list;
+    for (double inward = kGentle / std::max(kGentle, shape_.growth); inward < 1; inward *= 2)
+      list.insert(list.begin(), 1 - inward);
+    return list;
+  }
 
   MomentShare moment_share(StickRadius c) const override {
     const double deficit = moment_deficit(c);

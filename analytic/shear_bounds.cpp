@@ -87,6 +87,12 @@ class BoundUnderHertz final : public Profile {
   double twist_slope(StickRadius c) const override {
     return shape_.sum(c, c.ratio, -1, [](const Disc& disc, double cosine) { return disc.radius / cosine; });
   }
+  /// Hertz's pressure.
+  double punch_density(StickRadius s) const override { return s.ratio; }
+  std::vector<double> kinks() const override {
+    if (shape_.cap == 1) return {};
+    return {std::sqrt((1 - shape_.cap) * (1 + shape_.cap))};
+  }
 
   MomentShare moment_share(StickRadius c) const override {
     const double slip = shape_.sum(c, c.ratio, 0, [&](const Disc& disc, double) {

@@ -141,6 +141,23 @@ class Tabulated final : public Profile {
         beyond(at, at.ratio, [](double, double, const Piece& piece, double s) { return -piece.slope(s); });
     return edge_pressure > 0 ? edge_pressure / std::sqrt(at.complement * (1 + at.ratio)) + inner : inner;
   }
+  /// As H', with a factor s/rho: (2/pi) s (p(1)/sqrt(1 - s^2) - integral p'(rho)/sqrt(rho^2 - s^2) drho).
+  double punch_density(StickRadius s) const override {
+    const double edge_pressure = pieces_.back().pressure(0);
+    const double at_edge = edge_pressure > 0 ? edge_pressure / std::sqrt(s.complement * (1 + s.ratio)) : 0;
+    return 2 / pi * s.ratio *
+           (at_edge + beyond(s, s.ratio, [](double, double rho, const Piece& piece, double inward) {
+              return -piece.slope(inward) / rho;
+            }));
+  }
+  /// At most some of the knots: the curvature's jumps at the others are the smaller the more there are.
+  std::vector<double> kinks() const override {
+    constexpr std::size_t kMost = 64;
+    const std::size_t step = (pieces_.size() + kMost - 1) / kMost;
+    std::vector<double> list;
+    for (std::size_t i = step; i < pieces_.size(); i += step) list.push_back(pieces_[i].low());
+    return list;
+  }
 
   MomentShare moment_share(StickRadius c) const override {
     constexpr double kHalfway = 0.5;

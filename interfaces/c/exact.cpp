@@ -1,11 +1,13 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"
+#include "analytic/stresses/stress_field.hpp"
 #include "analytic/torsion.hpp"
 #include "interfaces/c/boundary.hpp"
 
@@ -80,6 +82,28 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
     throw std::invalid_argument(fmt::format("wanted = {}; allowed: 0 to {}", wanted, kMembers.size()));
   const auto member = kMembers[static_cast<std::size_t>(wanted)];
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
+}
+
+analytic::StressField stress_field(const Profile& profile, int given, std::span<const double> values,
+                                   double friction) {
+  if (!(friction >= 0 && std::isfinite(friction)))
+    throw std::domain_error(fmt::format("friction = {}; allowed: 0 or more, finite", friction));
+  if (values.size() != 1 && given != SLIPSTICK_MOMENT_RATIO)
+    throw std::invalid_argument(
+        fmt::format("{} values; allowed: 1, or a history of moment ratios", values.size()));
+  if (values.size() == 1 && values[0] >= 0) return {state_by(given)(values[0], profile), profile};
+  analytic::LoadingHistory history(profile);
+  for (const double moment_ratio : values) history.load_to(moment_ratio);
+  return {history, profile};
+}
+
+slipstick_stress stress_at(const analytic::StressField& field, analytic::BodyPoint at, double friction,
+                           double poisson) {
+  const analytic::PressureStress normal = field.by_pressure(at, poisson);
+  const analytic::TorsionStress shear = field.by_torsion(at);
+  const analytic::Severity both = analytic::severity(normal, shear, friction);
+  return {normal.rr, normal.tt,      normal.zz,   normal.rz,   shear.rt,
+          shear.tz,  both.von_mises, both.tresca, both.tension};
 }
 
 /// Calls the work with the profile of this name. The profile of the last call is kept, since many calls in a
@@ -190,6 +214,35 @@ int slipstick_exact_history_traction(const char* profile, size_t n_moments, cons
       history.load_to(moment_ratio);
     c::for_each(c::array(radii, n_radii, "radii"), "radii", c::array(results, n_radii, "results"),
                 [&](double radius) { return history.traction(radius); });
+  });
+}
+
+int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values,
+                             double friction, double poisson, size_t n, const double* radii,
+                             const double* depths, slipstick_stress* results) {
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    const analytic::StressField field =
+        c::stress_field(shape, given, c::array(values, n_values, "values"), friction);
+    const double* depth = c::array(depths, n, "depths").data();
+    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"), [&](double radius) {
+      return c::stress_at(field, {radius, *depth++}, friction, poisson);
+    });
+  });
+}
+
+int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
+                                   double friction, double poisson, int measure, slipstick_largest* result) {
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    constexpr std::array kMeasures{&analytic::Severity::von_mises, &analytic::Severity::tresca,
+                                   &analytic::Severity::tension};
+    c::require(result, "result");
+    if (!(measure >= 0 && measure < static_cast<int>(kMeasures.size())))
+      throw std::invalid_argument(
+          fmt::format("measure = {}; allowed: 0 to {}", measure, kMeasures.size() - 1));
+    const analytic::LargestStress found =
+        analytic::largest(c::stress_field(shape, given, c::array(values, n_values, "values"), friction),
+                          friction, poisson, kMeasures[static_cast<std::size_t>(measure)]);
+    *result = {found.value, found.at.radius, found.at.depth};
   });
 }
 

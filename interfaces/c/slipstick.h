@@ -114,6 +114,36 @@ int slipstick_exact_curve(const char* profile, size_t n, const double* turning_p
 int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
                                      size_t n_radii, const double* radii, double* results);
 
+/* Stresses below the surface, along r, theta and the outward normal z: tz is the traction q at the surface.
+ * By the pressure over p0, by the torsion (rt, tz) over mu p0; the last three of both together, over p0. */
+typedef struct slipstick_stress {
+  double rr;
+  double tt;
+  double zz;
+  double rz;
+  double rt;
+  double tz;
+  double von_mises; /* equivalent tensile stress */
+  double tresca;    /* largest less smallest principal stress */
+  double tension;   /* largest principal stress */
+} slipstick_stress;
+
+/* results[i]: at r/a = radii[i], depth z/a = depths[i]. The state: `given` is values[0]; several values of
+ * SLIPSTICK_MOMENT_RATIO are a history of moments. NaN for stresses by a pressure that the profile does not
+ * know. */
+int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values,
+                             double friction, double poisson, size_t n, const double* radii,
+                             const double* depths, slipstick_stress* results);
+
+/* The largest of von_mises (measure 0), tresca (1) or tension (2) in the body, and where it is. */
+typedef struct slipstick_largest {
+  double value;
+  double radius;
+  double depth;
+} slipstick_largest;
+int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
+                                   double friction, double poisson, int measure, slipstick_largest* result);
+
 /* The contact under a normal load, in SI units. shape: "hertz": sphere radius; "cone": slope;
  * "flat_punch": radius; "power:N": the gap's coefficient; "rounded_punch": flat radius, corner radius. */
 typedef struct slipstick_indentation {

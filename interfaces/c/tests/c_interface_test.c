@@ -100,6 +100,25 @@ static void test_histories(const char* profile) {
         "it runs from no load to the last turning point");
 }
 
+static void test_stresses(void) {
+  const double value = 0.9, radii[2] = {0, 0.5}, depths[2] = {0.5, 0};
+  slipstick_stress stress[2];
+  slipstick_largest most;
+  double traction;
+  check(slipstick_exact_stresses("hertz", 0, 1, &value, 0.3, 0.3, 2, radii, depths, stress) == SLIPSTICK_OK &&
+            near(stress[0].zz, -0.8, 1e-14),
+        "sigma_zz = -p0/(1 + z^2) on the axis");
+  check(slipstick_exact_traction("hertz", 0, value, 1, &radii[1], &traction) == SLIPSTICK_OK &&
+            near(stress[1].tz, traction, 1e-13),
+        "sigma_tz is the traction at the surface");
+  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0, 0.3, 1, &most) == SLIPSTICK_OK &&
+            near(most.value, 0.620, 1e-3) && near(most.depth, 0.481, 1e-3),
+        "the largest shear under a sphere");
+  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0, 0.3, 3, &most) == SLIPSTICK_BAD_INPUT &&
+            says("measure = 3"),
+        "no such measure");
+}
+
 static void test_refusals(void) {
   double values[3] = {0.5, 1.0, 0.5}, results[3] = {7, 7, 7};
   check(slipstick_exact("hertz", 0, 3, values, SLIPSTICK_TWIST, results) == SLIPSTICK_BAD_INPUT &&
@@ -295,6 +314,7 @@ int main(void) {
   test_states("hertz");
   test_states("rounded_punch:0.5");
   test_histories("flat_punch");
+  test_stresses();
   test_refusals();
   test_solution();
   test_refusals_of_a_solution();

@@ -170,6 +170,80 @@ def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment
     return _numbers("exact_traction", profile, [given, float(np.asarray(value))], radius)
 
 
+def _state(names: dict[str, Values], history: npt.ArrayLike | None) -> tuple[int, Any]:
+    """The given quantity of the state and its value, or a history's moments."""
+    if history is not None and all(value is None for value in names.values()):
+        return 0, _library.doubles(history).ravel()
+    given, value = _named({**names, "history": history})
+    return given, _library.doubles(value).ravel()
+
+
+def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | None = None, *,
+             moment_deficit: float | None = None, stick_ratio: float | None = None, stick_complement: float | None = None,
+             twist: float | None = None, history: Sequence[float] | None = None, friction: float = 0.0, poisson: float = 0.3,
+             profile: str = "hertz") -> np.recarray:
+    """The stresses in the body at radii r/a and depths z/a, for one state of first loading or after a `history`.
+
+    Components along r, theta and the outward normal z: rr, tt, zz, rz by the pressure, over p0; rt, tz by the torsion, over
+    mu p0 (tz is the traction q at the surface). Of both together, with friction mu and Poisson's ratio: von_mises, tresca
+    (largest less smallest principal stress) and tension (largest principal stress), over p0. NaN where the profile is only a
+    bound of the traction. An infinite stress raises InputError.
+
+    Hertz's pressure yields first below the surface:
+
+    >>> axis = stresses(0.0, [0.0, 0.48], 0.0)
+    >>> axis.tresca.round(2)
+    array([0.2 , 0.62])
+    """
+    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                            "stick_complement": stick_complement, "twist": twist}, history)
+    radii, depths = (_library.doubles(array) for array in np.broadcast_arrays(radius, depth))
+    before = [given, values.size, _library.address(values), friction, poisson]
+    found = np.empty(radii.shape, _library.STRESS)
+    return _called("exact_stresses", profile, before, radii, [_library.address(depths)], found).view(np.recarray)
+
+
+_MEASURES = ("von_mises", "tresca", "tension")
+
+
+def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float | None = None, stick_ratio: float | None = None,
+                   stick_complement: float | None = None, twist: float | None = None, history: Sequence[float] | None = None,
+                   friction: float = 0.0, poisson: float = 0.3, measure: str = "von_mises", profile: str = "hertz") -> Any:
+    """The largest von_mises, tresca or tension in the body, over p0, as a record of value, radius and depth.
+
+    >>> found = largest_stress(0.0, measure="tresca")
+    >>> round(found.value / 2, 4), round(found.depth, 3)
+    (0.31, 0.481)
+    """
+    if measure not in _MEASURES:
+        raise InputError(f"measure = {measure!r}; allowed: {', '.join(_MEASURES)}")
+    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                            "stick_complement": stick_complement, "twist": twist}, history)
+    found = np.recarray(1, _library.LARGEST)
+    _library.checked(_library.function("exact_largest_stress")(
+        _library.encoded(profile), given, values.size, _library.address(values), friction, poisson, _MEASURES.index(measure),
+        _library.address(found)))
+    return found[0]
+
+
+def first_yield(moment_ratio: npt.ArrayLike, friction: npt.ArrayLike, poisson: float = 0.3, measure: str = "von_mises",
+                profile: str = "hertz") -> np.recarray:
+    """Where the body yields first, and at which pressure: records of pressure (p0 over the tensile yield stress), radius and
+    depth, for all pairs of the moments M/M_lim and frictions (they are broadcast).
+
+    Friction moves it to the surface:
+
+    >>> first_yield([0.0, 0.9], 0.5).depth.round(3)
+    array([0.481, 0.   ])
+    """
+    moments, frictions = np.broadcast_arrays(_library.doubles(moment_ratio), _library.doubles(friction))
+    found = np.recarray(moments.shape, _library.LARGEST)
+    for index in np.ndindex(moments.shape):
+        found[index] = largest_stress(float(moments[index]), friction=float(frictions[index]), poisson=poisson, measure=measure,
+                                      profile=profile)
+    return np.rec.fromarrays([1 / found.value, found.radius, found.depth], names="pressure,radius,depth")
+
+
 def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
     """The pressure p/p0 at radii r/a in [0, 1]; infinite at radii where the profile is infinite.
 
