@@ -57,7 +57,8 @@ report-pdf: configure ## print the page of `make report` to build/report/report.
 
 test: configure ## run every test
 	$(call build,tests)
-	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
+	@status=0; ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc) || status=$$?; python=$(PYTHON); \
+	  "$${python:-python3}" -B cmake/tests/skipped.py $(BUILD); exit $$status
 
 gate: configure ## check the numbers stated in README.md and the guides, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	$(call build,slipstick slipstick_work)

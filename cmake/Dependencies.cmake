@@ -6,10 +6,17 @@ function(slipstick_not_built what why)
   set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_NOT_BUILT "NOT BUILT: ${what}, because ${why}\n")
 endfunction()
 
+# slipstick_not_tested(<test> <reason and package>): reports an optional test that is left out, after `make test`.
+function(slipstick_not_tested test why)
+  set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_NOT_TESTED "${test}: ${why}\n")
+endfunction()
+
 # slipstick_say_what_is_not_built(): writes not_built.txt, empty if every part is built, and warns.
 function(slipstick_say_what_is_not_built)
   get_property(not_built GLOBAL PROPERTY SLIPSTICK_NOT_BUILT)
   file(WRITE "${PROJECT_BINARY_DIR}/not_built.txt" "${not_built}")
+  get_property(not_tested GLOBAL PROPERTY SLIPSTICK_NOT_TESTED)
+  file(WRITE "${PROJECT_BINARY_DIR}/not_tested.txt" "${not_tested}")
   if(not_built)
     message(WARNING "${not_built}")
   endif()

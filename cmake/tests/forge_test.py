@@ -9,7 +9,7 @@ import sys
 try:
     import yaml
 except ImportError:
-    print("SKIPPED: python3-yaml is not installed")
+    print("SKIPPED: no PyYAML; install python3-yaml")
     sys.exit(77)
 
 

@@ -39,7 +39,11 @@ echo "NOT BUILT: certified digits: install libflint-dev (or run \`make setup\`)"
 check report slipstick
 expect "what setup installs is looked for again" configured
 check test tests
-expect "make test ends with the test runner's words" test "$(tail -n 1 "$folder/output")" = "ctest was run"
+expect "make test ends with the skipped tests" test "$(tail -n 2 "$folder/output" | tr '\n' ' ')" = "ctest was run python was run "
+printf '#!/usr/bin/env bash\nexit 8\n' > "$folder/programs/ctest"
+PATH="$folder/programs:$PATH" make BUILD="$build" test > "$folder/output" 2>&1
+expect "make test fails as the test runner does" test $? = 2
+expect "a failure leaves no list out" says "python was run"
 check gate "slipstick slipstick_work"
 expect "make gate asks for exact answers" grep --quiet "exact_errors.py $build/slipstick $build/gates/exact.json" "$CALLS"
 check bench "slipstick slipstick_python slipstick_benchmarks"
@@ -55,5 +59,19 @@ expect "make docs says what is missing" says "mkdocs is missing"
 ln -s cmake "$folder/programs/mkdocs"
 check docs ""
 expect "make docs is strict" grep --quiet "build --strict" "$CALLS"
+
+# A wheel that takes longer than a minute, here a tenth of a second.
+wheel="$folder/wheel"
+mkdir -p "$wheel/tools/bin"
+printf '#!/usr/bin/env bash\n[ "$1" != wheel ] || { sleep 1; touch "%s/slipstick-1.whl"; }\n' "$wheel" > "$wheel/tools/bin/pip"
+printf '#!/usr/bin/env bash\n[ "$2" != build ] || touch "%s/slipstick-1.tar.gz"\n' "$wheel" > "$wheel/tools/bin/python"
+for tool in auditwheel check-wheel-contents twine; do printf '#!/usr/bin/env bash\n' > "$wheel/tools/bin/$tool"; done
+chmod +x "$wheel"/tools/bin/*
+SLIPSTICK_WHEEL_MINUTE=0.1 cmake/wheel "$wheel" > "$folder/output" 2>&1
+expect "make wheel succeeds" test $? = 0
+expect "make wheel says every minute that it still builds" test "$(grep --count 'building the wheel.*, 0 min' "$folder/output")" -ge 3
+printf '#!/usr/bin/env bash\nexit 3\n' > "$wheel/tools/bin/pip"
+cmake/wheel "$wheel" > "$folder/output" 2>&1
+expect "make wheel fails as its tools do" test $? = 3
 
 conclude

@@ -18,5 +18,6 @@ if(SLIPSTICK_SICONOS_INCLUDE_DIR AND SLIPSTICK_FCLIB_INCLUDE_DIR AND SLIPSTICK_S
       $<TARGET_FILE:fclib_solve>)
   set_tests_properties(hard.third_opinion PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
 else()
-  message(STATUS "no hard.third_opinion: it needs Siconos, FCLIB and h5py")
+  slipstick_not_tested(hard.third_opinion
+    "no Siconos, FCLIB or h5py; install libsiconos-numerics-dev libfclib-dev python3-h5py")
 endif()

@@ -14,7 +14,7 @@ FACES = {"calculix": 12, "getfem": 16}  # across the contact radius
 def main(slipstick, scenes, name):
     scene, (folder, program) = Path(scenes) / "paper.toml", next(on_meshes.found(name))
     if on_meshes.said_version(folder, program) is None:
-        print(f"LEFT OUT: {name} is not installed")
+        print(f"LEFT OUT: {name} is not installed; make peers installs it")
         return 77
     with tempfile.TemporaryDirectory(prefix="slipstick-meshes-") as output:
         numbers = on_meshes.solved(folder, program, scene, FACES[name], Path(output))

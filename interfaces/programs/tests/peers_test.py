@@ -38,7 +38,7 @@ def main(program, scenes, name):
     except OSError:
         installed = False
     if not installed:
-        print(f"LEFT OUT: {name} is not installed")
+        print(f"LEFT OUT: {name} is not installed; make peers installs it")
         return 77
     for scene, settings, number in COMPARED[name]:
         done, theirs = solved(program, Path(scenes) / f"{scene}.toml", settings, "--program", file)
