@@ -48,9 +48,10 @@ def literature(report, data_dir):
     return FigureEntry(
         f"{counts['agrees']} of {len(every)} published numbers agree within their printed digits, {counts['differs']} differ for a "
         f"known reason, {counts[UNDECIDED]} cannot be compared at their digits, {counts['not compared']} not at all{wrong}.",
-        "A number agrees within half a unit of its last printed digit (the line), what the digits of its argument leave open, "
-        "and our own error, which is no larger than both; so points somewhat right of the line can agree. Where our own error is "
-        "larger, the number cannot be compared at its digits. What lies beyond the axis is drawn at its ends.",
+        "The line is half a unit of a number's last printed digit. A number agrees if its deviation is smaller than the sum of three "
+        "parts: this half unit, the effect of the rounding of the printed argument, and our own error. Points somewhat right of the "
+        "line can therefore agree. If our own error is larger than the other two parts, the number cannot be compared at its digits. "
+        "Points beyond the axis are drawn at its ends.",
         "Deviations from published numbers, over half a unit of their last digit, on a log scale, a row for each source.",
         figure, [(f"sources: {len({author(row) for row in every})}; numbers", str(len(every))),
                  *((f"numbers: {name}", str(count)) for name, count in counts.items() if count)])

@@ -37,7 +37,7 @@ def peers(report, data_dir):
         (f"{' and '.join(bad)} carries the right moment, yet its twist, tractions and slip directions are wrong."
          if bad and right else f"{len(programs) - len(bad)} of {len(programs)} fields are right within their mesh."),
         "Tractions that other programs wrote for the paper’s sphere at 0.9 of the limit moment, 64 cells across the contact. "
-        "What is allowed is what the mesh leaves open, measured on fields that are known to be right; slip directions are "
+        "The allowed errors are the errors that right fields have on this mesh, which were measured; slip directions are "
         f"in degrees. Values below {sci(MIN_SHOWN)} of it are drawn there.",
         "Errors of each judged quantity over what is allowed, on a log scale, one row a quantity and one marker a program.",
         figure, [(f"{text(each, 'program')}: {words}", sci(abs(found))) for each in programs
