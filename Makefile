@@ -9,6 +9,7 @@ REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 HARD_OPTIONS ?=
+DATASET_OPTIONS ?=
 SANITIZE ?=
 SANITIZER ?= asan-ubsan
 COMPILER ?=
@@ -20,7 +21,7 @@ INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup configure build report gallery report-pdf test gate literature hard sanitize coverage lint bench bench-against \
-  bench-trust references reference hardest docs install python wheel deb clean
+  bench-trust references reference hardest dataset docs install python wheel deb clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -126,6 +127,10 @@ references: configure ## compute the table of proven values (minutes; needs FLIN
 hardest: configure ## search for inputs at which the exact functions are least accurate (SEARCH_OPTIONS="--seed 2 --samples 1000")
 	$(call build,slipstick)
 	@$(PYTHON) -B analytic/references/proven_references.py $(BUILD)/slipstick search $(SEARCH_OPTIONS)
+
+dataset: configure ## write values, fields and discrete problems for tests of other programs, build/dataset (minutes; needs FLINT with Arb)
+	$(call build,slipstick slipstick_python)
+	@PYTHONPATH=$(BUILD)/python $(PYTHON) -B convergence/dataset/dataset.py $(BUILD)/slipstick $(BUILD)/dataset $(DATASET_OPTIONS)
 
 docs: ## build the documentation's site, build/site/index.html (needs MkDocs)
 	@command -v mkdocs > /dev/null || \
