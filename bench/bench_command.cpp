@@ -13,10 +13,9 @@
 #include "convergence/programs/package_module.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/scene_cost.hpp"
-#include "convergence/report/scene_page.hpp"
+#include "convergence/results/json_text.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/system/machine.hpp"
@@ -137,10 +136,9 @@ int time_scene(const BenchRequest& request, std::ostream& text, Json& result) {
   {
     const convergence::Interrupts interrupts;
     costs = convergence::scene_costs(
-        {.base = {.scene = request.scene, .overrides = request.overrides},
-         .size = request.quick ? convergence::quick_page() : convergence::usual_page(),
-         .beside = beside},
-        folder / "data", pool);
+        {.scene = request.scene, .overrides = request.overrides},
+        convergence::page_size(request.quick ? convergence::Effort::quick : convergence::Effort::usual),
+        beside, folder / "data", pool);
   }
   result = convergence::to_json(costs);
   text << convergence::costs_text(costs);

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "convergence/gates/gate_report.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/model/make_model.hpp"
-#include "solver/scene/scene_keys.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -65,12 +64,6 @@ Json to_json(const OperatorTime& row) {
   return json;
 }
 
-Json to_json(const KnownField& field) {
-  Json json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}};
-  json.update(field.check);
-  return json;
-}
-
 template <class Part>
 Json list(const std::vector<Part>& parts) {
   Json json = Json::array();
@@ -90,12 +83,10 @@ Json to_json(const OperatorTimes& times) {
   return json;
 }
 
-Json to_json(const PaperValidation& paper) {
-  Json json = paper.figures;
-  json.update(Json{{"hard", to_json(paper.hard)},
-                   {"peers", list(paper.peers)},
-                   {"literature", gates_json(paper.literature)}});
-  if (paper.gates) json.emplace("gates", gates_json(*paper.gates));
+Json to_json(const Costs& costs) {
+  Json json{{"cost", to_json(costs.cost)}};
+  if (costs.programs) json.emplace("programs", list(*costs.programs));
+  if (costs.operators) json.emplace("operators", to_json(*costs.operators));
   return json;
 }
 
@@ -168,7 +159,7 @@ Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& gr
   add("Lower body", material_text(scene.lower));
   if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
   add_friction_rows(scene.contact.friction, add);
-  add("Pressure", solver::word_of(solver::kPressureModels, scene.contact.pressure));
+  add("Pressure", to_string(scene.contact.pressure));
   if (scene.steps.size() == 1) {
     add("Loads", load_text(scene.steps.front()));
   } else {
@@ -183,9 +174,8 @@ Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& gr
         fmt::format(" on this page; the scene file has {} x {}", scene.grid.cells[0], scene.grid.cells[1]);
   }
   add("Grid", cells);
-  const std::string solved_by = scene.solver.program.empty()
-                                    ? solver::word_of(solver::kMethods, scene.solver.method)
-                                    : scene.solver.program.string();
+  const std::string solved_by =
+      scene.solver.program.empty() ? to_string(scene.solver.method) : scene.solver.program.string();
   add(scene.solver.program.empty() ? "Method" : "Program",
       fmt::format("{}, to a tolerance of {:g}", solved_by, scene.solver.tolerance));
   return rows;
@@ -256,12 +246,8 @@ Json to_json(const Headline& headline) {
 }
 
 Json to_json(const SceneCosts& costs) {
-  Json json{{"provenance", costs.provenance},
-            {"scene", costs.scene},
-            {"numbers", list(costs.numbers)},
-            {"cost", to_json(costs.cost)},
-            {"operators", to_json(costs.operators)}};
-  if (costs.programs) json.emplace("programs", list(*costs.programs));
+  Json json{{"provenance", costs.provenance}, {"scene", costs.scene}, {"numbers", list(costs.numbers)}};
+  json.update(to_json(costs.costs));
   return json;
 }
 
@@ -270,12 +256,10 @@ Json to_json(const Page& page) {
   set(json, "check", page.check);
   json.update(Json{{"studies", list(page.studies)}, {"numbers", list(page.numbers)}});
   set(json, "uncertainty", page.uncertainty);
-  if (page.cost) json.emplace("cost", to_json(*page.cost));
-  if (page.programs) json.emplace("programs", list(*page.programs));
-  if (page.operators) json.emplace("operators", to_json(*page.operators));
+  if (page.costs) json.update(to_json(*page.costs));
   if (page.hard) json.emplace("hard", to_json(*page.hard));
   if (page.digits) json.emplace("digits", to_json(*page.digits));
-  if (page.paper) json.emplace("paper", to_json(*page.paper));
+  set(json, "paper", page.paper);
   json.emplace("headline", to_json(page.headline));
   return json;
 }

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/results/result_parts.hpp"
@@ -15,6 +14,9 @@
 
 /// The page of a scene as a value: docs/schema/report.schema.json has the same names.
 namespace slipstick::convergence {
+
+/// The work that a page may take: seconds, a minute or two, or some minutes more.
+enum class Effort { quick, usual, full };
 
 /// A scene in words. text: its file; summary: labels and values.
 struct SceneDescription {
@@ -94,14 +96,20 @@ struct OperatorTimes {
   std::string remark = {};
 };
 
+/// The methods, other programs and ways to sum. programs: none where there is none to compare; operators:
+/// none where another program solves the scene.
+struct Costs {
+  Cost cost = {};
+  std::optional<std::vector<PageProgram>> programs = {};
+  std::optional<OperatorTimes> operators = {};
+};
+
 /// `slipstick bench` without a page.
 struct SceneCosts {
   Json provenance = {};
   std::string scene = {};
   std::vector<PageNumber> numbers = {};
-  Cost cost = {};
-  std::optional<std::vector<PageProgram>> programs = {};
-  OperatorTimes operators = {};
+  Costs costs = {};
 };
 Json to_json(const SceneCosts& costs);
 
@@ -131,24 +139,6 @@ struct Headline {
 };
 Json to_json(const Headline& headline);
 
-/// A field of another program whose verdict is known. check: numbers that `check` finds.
-struct KnownField {
-  std::string program = {};
-  std::string file = {};
-  std::string expected = {};
-  std::string verdict = {};
-  Json check = {};
-};
-
-/// The paper's validation. figures: the keys of the data that are only drawn.
-struct PaperValidation {
-  Json figures = {};
-  HardResult hard = {};
-  std::vector<KnownField> peers = {};
-  std::vector<Judgement> literature = {};
-  std::optional<std::vector<Judgement>> gates = {};  ///< none on a quick page
-};
-
 /// The parts that a page need not have are optional.
 struct Page {
   Json provenance = {};
@@ -158,12 +148,10 @@ struct Page {
   std::vector<StudyResult> studies = {};  ///< of meshes, unless the scene has its own, and of tolerances
   std::vector<PageNumber> numbers = {};
   std::optional<Json> uncertainty = {};
-  std::optional<Cost> cost = {};
-  std::optional<std::vector<PageProgram>> programs = {};
-  std::optional<OperatorTimes> operators = {};
+  std::optional<Costs> costs = {};
   std::optional<HardResult> hard = {};
   std::optional<DigitsResult> digits = {};
-  std::optional<PaperValidation> paper = {};
+  std::optional<Json> paper = {};  ///< the validation of the paper
   Headline headline = {};
 };
 Json to_json(const Page& page);

@@ -10,7 +10,6 @@
 
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/scene_page.hpp"
-#include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
@@ -62,9 +61,9 @@ void draw(const std::vector<fs::path>& folders, const ReportRequest& request) {
   if (!current) run_report_script("render.py", words, "the results are in " + request.output);
 }
 
-ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
-  RunOptions runs = request.runs;
-  for (const std::string& file : request.beside) runs.overrides.push_back(program_override(file));
+/// The pool of the options; the programs to compare with may run, since the user names them.
+ProcessPool pool_in(const fs::path& data, RunOptions runs, const std::vector<BesideMethod>& beside) {
+  for (const BesideMethod& each : beside) runs.overrides.push_back(each.override);
   runs.output = data / "points";
   return runs.pool();
 }
@@ -89,19 +88,12 @@ std::vector<fs::path> page_folders(const ReportRequest& request) {
 
 /// The page of the command line. Throws InputError for a word that cannot be read.
 PageRequest page_request(const ReportRequest& request) {
-  PageRequest page{.base = {.scene = {}, .overrides = request.runs.overrides}, .size = usual_page()};
-  ValidationSize validation = page_validation();
-  if (request.quick) {
-    page.size = quick_page();
-    validation = quick_validation();
-  } else if (request.full) {
-    page.size = full_page();
-    validation = full_validation();
-  }
+  const Effort effort = request.quick ? Effort::quick : request.full ? Effort::full : Effort::usual;
+  PageRequest page{.base = {.scene = {}, .overrides = request.runs.overrides}, .size = page_size(effort)};
   for (const std::string& word : request.wanted) page.wanted.push_back(read_wanted_error(word));
   for (const std::string& file : request.beside) page.beside.push_back(read_beside_method(file));
   page.uncertain = request.uncertain;
-  if (request.scenes.empty()) page.validation = {project_file("convergence"), validation};
+  if (request.scenes.empty()) page.validation = {project_file("convergence"), effort};
   return page;
 }
 
@@ -120,7 +112,7 @@ int make_pages(PageRequest request, const ReportRequest& words, std::ostream& te
   std::vector<Page> pages;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const fs::path data = folders[i] / "data";
-    const ProcessPool pool = pool_in(data, words);
+    const ProcessPool pool = pool_in(data, words.runs, request.beside);
     request.base.scene = words.scenes[i];
     {
       const Interrupts interrupts;

@@ -31,13 +31,11 @@ Json choices(const solver::Scene& scene) {
   for (const double wanted : kWanted) {
     Json& row = rows.emplace_back(Json{{"wanted", wanted}});
     try {
-      const AccuracyTarget target{wanted, AccuracyOf::twist};
-      require_reachable(scene, target);
-      const Json plan = to_json(accuracy_plan(scene, target));
+      const Json plan = to_json(accuracy_plan(scene, {wanted}));
       for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
         if (plan.contains(key)) row[key] = plan[key];
       }
-      if (std::string note = note_on(scene); !note.empty()) row.emplace("remark", std::move(note));
+      if (plan.contains("note")) row["remark"] = plan["note"];
     } catch (const solver::InputError& error) {
       set_missing(row, "cells", error.what());
     }
@@ -52,12 +50,14 @@ struct Contender {
   Index most_cells;
 };
 
-std::vector<Contender> contenders(const solver::Scene& scene, Index finest, const PageSize& size) {
+std::vector<Contender> contenders(const PageScene& at) {
+  const solver::Scene& scene = at.scene;
+  const Index finest = at.meshes.answer.back();
   std::vector<Contender> all;
   for (const auto& [name, method] : solver::kMethods) {
     all.push_back({name,
                    {fmt::format("solver.method=\"{}\"", name), kNoProgram},
-                   method == scene.solver.method ? finest : size.method_cells});
+                   method == scene.solver.method ? finest : at.size.method_cells});
   }
   if (!scene.solver.program.empty())
     all.push_back({read_solver_program(scene.solver.program).name, {}, finest});
@@ -91,24 +91,17 @@ OperatorTime operator_time(const std::string& kind, double cells, const std::vec
           .high = number_or(time.high, "one repetition")};
 }
 
-std::string shown_number(double value, const char* unit) {
-  return std::isfinite(value) ? fmt::format("{:.2e}{}", value, unit) : std::string("-");
-}
-
-}  // namespace
-
-Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
-                        const Reference& reference, const PageSize& size, const ProcessPool& pool) {
+/// Every method, and the program of the scene if it has one, on several meshes and to several tolerances.
+Cost error_against_time(const PageScene& at, const Reference& reference, const ProcessPool& pool) {
   Cost cost{.number = reference.number,
             .reference_uncertainty = number_or(reference.uncertainty, "no reference is known"),
-            .choices = choices(scene)};
+            .choices = choices(at.scene)};
   std::vector<RunSpec> runs;
-  for (const Contender& each : contenders(scene, meshes.back(), size)) {
-    for (const Index cells : meshes) {
+  for (const Contender& each : contenders(at)) {
+    for (const Index cells : at.meshes.answer) {
       if (cells > each.most_cells) continue;
       for (const double tolerance : kCostTolerances) {
-        RunSpec& run = runs.emplace_back(changed(base, each.overrides));
-        run.overrides.push_back(cells_override(scene, cells));
+        RunSpec& run = runs.emplace_back(changed(at.on(cells), each.overrides));
         run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
         cost.points.push_back({.method = each.name, .cells = cells, .tolerance = tolerance});
       }
@@ -127,16 +120,16 @@ Cost error_against_time(const RunSpec& base, const solver::Scene& scene, const s
   return cost;
 }
 
-std::vector<PageProgram> answers_of_programs(const RunSpec& base, const solver::Scene& scene,
-                                             const std::vector<Index>& meshes, const Contest& contest,
+/// The answers of this program and of others on the meshes of a page of another program.
+std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest& contest,
                                              const ProcessPool& pool) {
   std::vector<BesideMethod> all{{"slipstick", kNoProgram}};
   all.insert(all.end(), contest.programs.begin(), contest.programs.end());
   std::vector<RunSpec> runs;
   std::vector<PageProgram> rows;
   for (const BesideMethod& each : all) {
-    for (const Index cells : meshes) {
-      runs.push_back(changed(base, {each.override, cells_override(scene, cells)}));
+    for (const Index cells : meshes_of(at.scene, for_program(at.size)).answer) {
+      runs.push_back(changed(at.on(cells), {each.override}));
       rows.push_back({.name = each.name, .cells = cells});
     }
   }
@@ -153,22 +146,22 @@ std::vector<PageProgram> answers_of_programs(const RunSpec& base, const solver::
     row.cpu_seconds =
         number_or(foreign ? number_at(result, "program.cpu_seconds") : kNaN, "it was not counted");
     const bool only_pressure = foreign && word(*program, "fields") == "pressure";
-    compare(
-        row, result,
-        only_pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{contest.number},
-        contest.numbers);
+    compare(row, result,
+            only_pressure ? std::vector<std::string>{"approach", "peak_pressure"}
+                          : std::vector{contest.reference.number},
+            contest.numbers);
   }
   return rows;
 }
 
-OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
-                                   const ProcessPool& pool) {
+/// Whole solves with direct sums and with convolution on small meshes of the scene.
+OperatorTimes direct_against_dcfft(const PageScene& at, const ProcessPool& pool) {
   constexpr const char* kKinds[] = {"dcfft", "direct"};
   std::vector<RunSpec> runs;
   for (const char* kind : kKinds) {
-    for (const double cells : size.operator_cells) {
-      for (int repetition = 1; repetition <= size.repetitions; ++repetition) {
-        RunSpec& run = runs.emplace_back(changed(base, {cells_override(scene, static_cast<Index>(cells))}));
+    for (const double cells : at.size.operator_cells) {
+      for (int repetition = 1; repetition <= at.size.repetitions; ++repetition) {
+        RunSpec& run = runs.emplace_back(at.on(static_cast<Index>(cells)));
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
         run.overrides.push_back(
             fmt::format("name=\"repetition {}\"", repetition));  // else it is the same run
@@ -180,9 +173,9 @@ OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& sce
   std::map<std::string, Family> families;
   auto result = results.begin();
   for (const char* kind : kKinds) {
-    for (const double cells : size.operator_cells) {
+    for (const double cells : at.size.operator_cells) {
       std::vector<double> seconds;
-      for (int k = 0; k < size.repetitions; ++k) seconds.push_back(seconds_of(*result++));
+      for (int k = 0; k < at.size.repetitions; ++k) seconds.push_back(seconds_of(*result++));
       families[kind].push_back({cells, seconds});
       times.rows.push_back(operator_time(kind, cells, seconds));
     }
@@ -196,50 +189,55 @@ OperatorTimes direct_against_dcfft(const RunSpec& base, const solver::Scene& sce
   return times;
 }
 
-SceneCosts scene_costs(const PageRequest& request, const std::filesystem::path& folder,
-                       const ProcessPool& pool) {
-  const RunSpec& base = request.base;
-  const solver::Scene scene = solver::read_scene(base.scene, base.overrides);
-  const Meshes meshes = meshes_of(scene, request.size);
-  if (meshes.given) {
-    throw solver::InputError(scene.source.string(),
+std::string shown_number(double value, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:.2e}{}", value, unit) : std::string("-");
+}
+
+}  // namespace
+
+Costs costs_of(const PageScene& at, const Contest& contest, const ProcessPool& pool) {
+  Costs costs{.cost = error_against_time(at, contest.reference, pool)};
+  if (!contest.programs.empty()) costs.programs = answers_of_programs(at, contest, pool);
+  if (at.own) costs.operators = direct_against_dcfft(at, pool);
+  return costs;
+}
+
+SceneCosts scene_costs(const RunSpec& base, const PageSize& size, const std::vector<BesideMethod>& programs,
+                       const std::filesystem::path& folder, const ProcessPool& pool) {
+  const PageScene at = page_scene(base, size);
+  if (at.meshes.given) {
+    throw solver::InputError(at.scene.source.string(),
                              "its files have its grid; allowed: a scene that can be solved on other meshes");
   }
   solver::make_folder(folder);
-  const std::vector<Json> results = solve_answer(base, scene, meshes, folder / "answer.h5", pool);
-  SceneCosts costs{.provenance = provenance(std::max(1, scene.solver.threads)), .scene = scene.name};
-  costs.numbers = number_rows(scene, results, scene_studies(base, scene, meshes, request.size, pool).front());
-  const Reference reference = reference_of(results.back(), costs.numbers);
-  costs.cost = error_against_time(base, scene, meshes.answer, reference, request.size, pool);
-  if (!request.beside.empty()) {
-    const Meshes coarse = meshes_of(scene, for_program(request.size));
-    costs.programs = answers_of_programs(base, scene, coarse.answer,
-                                         {request.beside, costs.numbers, reference.number}, pool);
-  }
-  costs.operators = direct_against_dcfft(base, scene, request.size, pool);
+  const std::vector<Json> results = solve_answer(at, folder / "answer.h5", pool);
+  SceneCosts costs{.provenance = provenance(std::max(1, at.scene.solver.threads)), .scene = at.scene.name};
+  costs.numbers = number_rows(at.scene, results, scene_studies(at, pool).front());
+  costs.costs = costs_of(at, {programs, costs.numbers, reference_of(results.back(), costs.numbers)}, pool);
   return costs;
 }
 
 std::string costs_text(const SceneCosts& costs) {
+  const auto& [cost, programs, operators] = costs.costs;
   std::string text =
       fmt::format("{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n",
-                  costs.scene, costs.cost.number, shown_number(costs.cost.reference_uncertainty, ""),
-                  "method", "cells", "tolerance", "error", "time");
-  for (const CostPoint& point : costs.cost.points) {
+                  costs.scene, cost.number, shown_number(cost.reference_uncertainty, ""), "method", "cells",
+                  "tolerance", "error", "time");
+  for (const CostPoint& point : cost.points) {
     text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point.method, point.cells,
                         point.tolerance, shown_number(point.error, ""), shown_number(point.seconds, " s"),
                         point.status == "converged" ? "" : "  " + point.status);
   }
-  for (const PageProgram& row : costs.programs.value_or(std::vector<PageProgram>{})) {
+  for (const PageProgram& row : programs.value_or(std::vector<PageProgram>{})) {
     text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "",
                         shown_number(row.error, ""), shown_number(row.seconds, " s"), row.number,
                         row.status == "converged" ? "" : row.status);
   }
-  const OperatorTimes& crossing = costs.operators;
-  text += std::isfinite(crossing.cells)
+  if (!operators) return text;
+  text += std::isfinite(operators->cells)
               ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n",
-                            crossing.cells.value)
-              : fmt::format("  convolution against direct summation: {}\n", crossing.remark);
+                            operators->cells.value)
+              : fmt::format("  convolution against direct summation: {}\n", operators->remark);
   return text;
 }
 

@@ -22,6 +22,8 @@ namespace fs = std::filesystem;
 using solver::Index;
 using solver::Scene;
 
+/// The coarsest mesh of a study, cells along the longer side.
+constexpr Index kFewestCells = 8;
 /// Meshes of the study, and meshes of the answer, as parts of the finest one.
 constexpr double kStudyParts[] = {0.125, 0.1875, 0.25, 0.375, 0.5, 0.75, 1.0};
 constexpr double kAnswerParts[] = {0.25, 0.5, 1.0};
@@ -179,7 +181,46 @@ void add_error(PageNumber& row, const MeshError& mesh, double path) {
   row.uncertainty = number_or(exact ? 0.0 : mesh.uncertainty + path, row.basis);
 }
 
+/// Coarser meshes for a long history, whose time is proportional to its steps.
+PageSize for_history(PageSize size) {
+  size.most_cells /= 2;
+  size.most_study_cells /= 2;
+  size.method_cells /= 2;
+  size.operator_cells.resize(size.operator_cells.size() / 2);
+  return size;
+}
+
 }  // namespace
+
+PageSize for_program(PageSize size) {
+  constexpr Index kSlower = 4;
+  size.most_cells = std::max(size.most_cells / kSlower, 4 * kFewestCells);
+  size.most_study_cells = size.most_cells;
+  size.shifts = 1;
+  return size;
+}
+
+PageSize page_size(Effort effort) {
+  if (effort == Effort::quick) {
+    return {.most_cells = 64,
+            .most_study_cells = 64,
+            .shifts = 1,
+            .method_cells = 32,
+            .operator_cells = {8, 12, 16, 24},
+            .repetitions = 2,
+            .finer_meshes = false,
+            .long_history = 40};
+  }
+  const bool full = effort == Effort::full;
+  return {.most_cells = full ? 1024 : 256,
+          .most_study_cells = full ? 1024 : 256,
+          .shifts = 4,
+          .method_cells = full ? 128 : 64,
+          .operator_cells = {8, 12, 16, 24, 32, 48},
+          .repetitions = 3,
+          .finer_meshes = true,
+          .long_history = std::numeric_limits<std::size_t>::max()};
+}
 
 Meshes meshes_of(const Scene& scene, const PageSize& size) {
   if (has_given_grid(scene)) return {true, {}, {}};
@@ -188,11 +229,22 @@ Meshes meshes_of(const Scene& scene, const PageSize& size) {
   return {false, meshes(of_study, kStudyParts), meshes(finest, kAnswerParts)};
 }
 
-std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Meshes& meshes,
-                               const fs::path& fields, const ProcessPool& pool) {
+RunSpec PageScene::on(Index cells) const { return changed(base, {cells_override(scene, cells)}); }
+
+PageScene page_scene(const RunSpec& base, const PageSize& size) {
+  PageScene at{.base = base, .scene = solver::read_scene(base.scene, base.overrides), .size = size};
+  at.own = at.scene.solver.program.empty();
+  if (!at.own) at.size = for_program(size);
+  at.shortened = at.scene.steps.size() * static_cast<std::size_t>(at.scene.cycles) > size.long_history;
+  if (at.shortened) at.size = for_history(std::move(at.size));
+  at.meshes = meshes_of(at.scene, at.size);
+  return at;
+}
+
+std::vector<Json> solve_answer(const PageScene& at, const fs::path& fields, const ProcessPool& pool) {
   std::vector<RunSpec> runs;
-  for (const Index cells : meshes.answer) runs.push_back(changed(base, {cells_override(scene, cells)}));
-  if (runs.empty()) runs.push_back(base);
+  for (const Index cells : at.meshes.answer) runs.push_back(at.on(cells));
+  if (runs.empty()) runs.push_back(at.base);
   runs.back().fields = fields;
   std::vector<Json> results = to_json(pool.run(runs));
   if (is_failed(results.back())) throw std::runtime_error(results.back().value("message", ""));
@@ -200,8 +252,8 @@ std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Me
   return results;
 }
 
-std::vector<StudyResult> scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes,
-                                       const PageSize& size, const ProcessPool& pool) {
+std::vector<StudyResult> scene_studies(const PageScene& at, const ProcessPool& pool) {
+  const auto& [base, scene, size, meshes, own, shortened] = at;
   std::vector<StudyResult> found;
   Study study{.source = base.scene,
               .name = "meshes",

@@ -5,16 +5,29 @@
 #include <vector>
 
 #include "convergence/report/page.hpp"
-#include "convergence/report/scene_page.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/process_pool.hpp"
 #include "convergence/studies/study_result.hpp"
 #include "solver/scene/scene.hpp"
 
 /// The numbers of a page, with the meshes and studies from which their errors follow.
 namespace slipstick::convergence {
 
-/// The coarsest mesh of a study, cells along the longer side.
-inline constexpr solver::Index kFewestCells = 8;
+/// The size of a page.
+struct PageSize {
+  solver::Index most_cells;  ///< along the longer side of the answer's mesh; a scene with fewer keeps its own
+  /// Bound of the study's finest mesh, which else has twice the answer's cells.
+  solver::Index most_study_cells;
+  int shifts;                          ///< grids of each mesh, see Study; two for a history
+  solver::Index method_cells;          ///< the finest mesh on which methods are compared
+  std::vector<double> operator_cells;  ///< meshes for direct sums against convolution
+  int repetitions;                     ///< of each of these times
+  bool finer_meshes;                   ///< hard variants are also solved on finer meshes
+  std::size_t long_history;            ///< a history with more steps has half as fine meshes
+};
+PageSize page_size(Effort effort);
+/// The same for another program, which may take a hundred times as long.
+PageSize for_program(PageSize size);
 
 /// The meshes on which a scene is solved, cells along the longer side, rising; empty where the files of the
 /// scene give its grid.
@@ -25,14 +38,33 @@ struct Meshes {
 };
 Meshes meshes_of(const solver::Scene& scene, const PageSize& size);
 
+/// A scene of a page with all that its solves need.
+struct PageScene {
+  RunSpec base;  ///< the scene as the user names it
+  solver::Scene scene;
+  PageSize size;
+  Meshes meshes = {};
+  bool own = true;         ///< this program solves it, no other one
+  bool shortened = false;  ///< a long history: its meshes are half as fine
+
+  /// The scene on another mesh, on the answer's coarsest one, and on its finest one. Where the files of the
+  /// scene give its grid, the last two are the scene itself.
+  RunSpec on(solver::Index cells) const;
+  RunSpec on_coarsest() const { return meshes.given ? base : on(meshes.answer.front()); }
+  RunSpec on_finest() const { return meshes.given ? base : on(meshes.answer.back()); }
+};
+
+/// Reads the scene, and chooses its meshes: coarser ones for another program and for a long history. Throws
+/// InputError for a scene that cannot be read.
+PageScene page_scene(const RunSpec& base, const PageSize& size);
+
 /// The results on the answer's meshes, coarsest first; the fields of the last one are written to a file.
 /// Throws std::runtime_error where it has no answer.
-std::vector<Json> solve_answer(const RunSpec& base, const solver::Scene& scene, const Meshes& meshes,
-                               const std::filesystem::path& fields, const ProcessPool& pool);
+std::vector<Json> solve_answer(const PageScene& at, const std::filesystem::path& fields,
+                               const ProcessPool& pool);
 
 /// The studies of meshes, unless the scene has its own, and of tolerances.
-std::vector<StudyResult> scene_studies(const RunSpec& base, const solver::Scene& scene, const Meshes& meshes,
-                                       const PageSize& size, const ProcessPool& pool);
+std::vector<StudyResult> scene_studies(const PageScene& at, const ProcessPool& pool);
 
 /// Each number of the answer with its error, by the mesh and by the length of the load steps. results:
 /// coarsest mesh first; study: of meshes.

@@ -3,10 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
-#include "convergence/gates/gate_report.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -21,65 +21,6 @@ constexpr double kWorseOrder = 0.25;
 /// Complementarity gap of another program's pressure over its energy: other discretisations of the same
 /// contact leave a thousandth.
 constexpr double kOpenUnderPressure = 1e-2;
-
-/// The passing gate that is nearest to its bound; nullptr where none has a bound in numbers.
-const Judgement* nearest_to_bound(const std::vector<Judgement>& gates) {
-  const Judgement* found = nullptr;
-  for (const Judgement& gate : gates) {
-    const bool counts = gate.outcome == Outcome::passed && std::isfinite(gate.factor);
-    if (counts && (found == nullptr || gate.factor > found->factor)) found = &gate;
-  }
-  return found;
-}
-
-/// The gates that fail, pass unexpectedly or are refused.
-std::string wrong_gates(const std::vector<Judgement>& gates) {
-  std::string line;
-  for (const Judgement& gate : gates) {
-    if (gate.outcome == Outcome::failed || gate.outcome == Outcome::passed_unexpectedly ||
-        gate.outcome == Outcome::refused) {
-      line += fmt::format("; {} {}", gate.gate.id, to_string(gate.outcome));
-    }
-  }
-  return line;
-}
-
-long number_with(const std::vector<Judgement>& gates, Outcome outcome) {
-  return std::ranges::count(gates, outcome, &Judgement::outcome);
-}
-
-Finding judge_literature(const std::vector<Judgement>& gates) {
-  return {"Literature",
-          fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
-                      number_with(gates, Outcome::passed), gates.size(),
-                      number_with(gates, Outcome::failed_as_expected)) +
-              wrong_gates(gates),
-          shown(exit_code(gates) == 0)};
-}
-
-Finding judge_gates(const std::vector<Judgement>& gates) {
-  std::string line = fmt::format("{} of {} pass", number_with(gates, Outcome::passed), gates.size());
-  if (const long expected = number_with(gates, Outcome::failed_as_expected); expected > 0) {
-    line += fmt::format(", {} fails as expected", expected);
-  }
-  line += wrong_gates(gates);
-  if (const Judgement* const nearest = nearest_to_bound(gates); nearest != nullptr) {
-    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it", nearest->gate.id,
-                        100.0 * nearest->factor);
-  }
-  return {"Gates", line, shown(exit_code(gates) == 0)};
-}
-
-Finding judge_known_fields(const std::vector<KnownField>& peers) {
-  Finding found{"Fields of others", ""};
-  for (const KnownField& peer : peers) {
-    found.line += fmt::format("{}{} is {}", found.line.empty() ? "" : ", ", peer.program, peer.verdict);
-    if (peer.verdict == peer.expected) continue;
-    found.line += fmt::format(" (known to be {})", peer.expected);
-    found.shown = Shown::fails;
-  }
-  return found;
-}
 
 /// The error of a number and how it is known.
 std::string error_text(const PageNumber& row) {
@@ -226,6 +167,19 @@ Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string
           holds ? Shown::holds : Shown::open};
 }
 
+WantedError read_wanted_error(const std::string& word) {
+  const std::size_t at = std::min(word.find('='), word.size());
+  const std::string number = word.substr(std::min(at + 1, word.size()));
+  double error = kNaN;
+  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), error);
+  if (problem != std::errc() || end != number.data() + number.size() || !(error > 0.0 && error < 1.0)) {
+    throw solver::InputError("--want", word, "no error",
+                             "QUANTITY=ERROR with a relative error between 0 and 1, as twist=1e-3");
+  }
+  const std::string quantity = word.substr(0, at);
+  return {quantity == "twist" ? "twist_angle" : quantity, error};
+}
+
 Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& numbers) {
   if (const PageNumber* const row = find_row(numbers, wanted.quantity)) {
     const bool holds = std::abs(row->error) <= wanted.error;
@@ -240,25 +194,10 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
                            fmt::format("{}", fmt::join(keys, ", ")));
 }
 
-std::vector<Finding> judge_validation(const PaperValidation& paper) {
-  Finding gates{"Gates", "not on a quick page; make gate runs them"};
-  if (paper.gates) gates = judge_gates(*paper.gates);
-  return {std::move(gates), judge_hard(paper.hard, "Hard scenes"), judge_known_fields(paper.peers),
-          judge_literature(paper.literature)};
-}
-
-Headline headline_of(std::vector<Finding> findings, const Page& page) {
-  Headline headline{.findings = std::move(findings), .commit = text_of(page.provenance, "commit")};
-  Json& counts = headline.counts;
-  if (page.hard) counts.update(Json{{"hard", counts_json(*page.hard)}});
-  if (page.paper) {
-    counts.update(Json{{"hard_scenes", counts_json(page.paper->hard)}});
-    if (page.paper->gates) {
-      counts.update(Json{{"gates", counts_json(*page.paper->gates)}});
-    } else {
-      set_missing(counts, "gates", "left out of a quick page");
-    }
-  }
+Headline headline_of(std::vector<Finding> findings, Json counts, const Page& page) {
+  Headline headline{.findings = std::move(findings),
+                    .commit = text_of(page.provenance, "commit"),
+                    .counts = std::move(counts)};
   for (const PageNumber& row : page.numbers) headline.numbers.emplace_back(row.key, row.value);
   return headline;
 }
@@ -307,6 +246,23 @@ std::string headline_text(const Headline& headline) {
     add(i == 0 ? "Changes" : "", fmt::format("{}: {}", since, found[i]));
   if (found.size() > kShownChanges) add("", fmt::format("and {} more", found.size() - kShownChanges));
   return text;
+}
+
+std::vector<JunitCase> page_cases(const Page& page) {
+  std::vector<JunitCase> cases;
+  for (const auto& [what, line, shown] : page.headline.findings) {
+    const bool holds = shown == Shown::holds;
+    cases.push_back({.suite = page.scene.name,
+                     .classname = "report",
+                     .name = what,
+                     .verdict = holds                   ? CaseVerdict::passed
+                                : shown == Shown::fails ? CaseVerdict::failure
+                                                        : CaseVerdict::skipped,
+                     .type = "page",
+                     .message = holds ? "" : line,
+                     .shown = line});
+  }
+  return cases;
 }
 
 }  // namespace slipstick::convergence

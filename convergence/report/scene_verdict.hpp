@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "convergence/report/page.hpp"
-#include "convergence/report/scene_page.hpp"
+#include "convergence/results/markup.hpp"
 
 /// The findings on which the verdict of a page rests, its headline, and the changes since the page before.
 namespace slipstick::convergence {
@@ -21,6 +21,14 @@ Finding judge_hard_beside(const HardResult& hard);
 /// The error of the number by which answers are compared; open from solver::kPoorlyResolved on.
 Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string& number);
 
+/// The largest relative error that the user accepts for a number of the result.
+struct WantedError {
+  std::string quantity;  ///< key of a number of the result, twist_angle; "twist" is short for it
+  double error;
+};
+/// "twist=1e-3". Throws InputError for anything else, and for an error that is not between 0 and 1.
+WantedError read_wanted_error(const std::string& word);
+
 /// Throws InputError for a quantity that is no number of the page.
 Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& numbers);
 
@@ -31,12 +39,8 @@ Finding judge_order(const StudyResult& study, const std::string& number, const s
 /// No hard case is wrong or unconverged. what: title of the cases, as "Hard variants".
 Finding judge_hard(const HardResult& hard, const std::string& what);
 
-/// Gates hold, unless they are omitted; no hard case is wrong; `check` finds the known verdicts of fields of
-/// other programs; published numbers agree.
-std::vector<Finding> judge_validation(const PaperValidation& paper);
-
-/// Takes the counts of hard cases and gates from the page.
-Headline headline_of(std::vector<Finding> findings, const Page& page);
+/// counts: of hard cases and gates.
+Headline headline_of(std::vector<Finding> findings, Json counts, const Page& page);
 
 /// The changes of verdict, counts and numbers since an earlier headline, a sentence each; times do not count.
 std::vector<std::string> changes(const Headline& now, const Json& before);
@@ -47,5 +51,8 @@ Headline with_changes(Headline now, const Json& before);
 
 /// For a person, ten lines at most.
 std::string headline_text(const Headline& headline);
+
+/// A case for each finding.
+std::vector<JunitCase> page_cases(const Page& page);
 
 }  // namespace slipstick::convergence

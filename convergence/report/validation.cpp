@@ -1,4 +1,4 @@
-#include "convergence/report/scene_page.hpp"
+#include "convergence/report/validation.hpp"
 
 #include <fmt/core.h>
 
@@ -13,10 +13,12 @@
 #include "analytic/torsion.hpp"
 #include "convergence/check/check.hpp"
 #include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
+#include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 
@@ -30,6 +32,33 @@ constexpr double kProfileRatios[] = {0.5, 0.9};
 constexpr double kMethodsRatio = 0.9;  ///< load for the comparison of methods, as in the scene of the ellipse
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
 constexpr const char* kMethods[] = {"coulomb", "paper"};
+constexpr std::size_t kQuickHardStep = 10;  ///< every tenth hard case
+
+/// How large the validation is.
+struct ValidationSize {
+  Index loading_cells;                ///< cells along each side for the loading curve and the maps
+  std::vector<Index> mesh_cells;      ///< of the mesh study
+  std::vector<Index> ellipse_cells;   ///< along the ellipse's long axis; half as many along the short one
+  std::vector<double> moment_ratios;  ///< of the loading curve
+};
+
+ValidationSize size_for(Effort effort) {
+  if (effort == Effort::quick) {
+    return {.loading_cells = 48,
+            .mesh_cells = {16, 32, 64},
+            .ellipse_cells = {32, 64},
+            .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}};
+  }
+  ValidationSize size{.loading_cells = 128,
+                      .mesh_cells = {32, 64, 128, 256},
+                      .ellipse_cells = {64, 128, 256},
+                      .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
+  if (effort == Effort::full) {
+    size.mesh_cells.push_back(512);
+    size.ellipse_cells.push_back(512);
+  }
+  return size;
+}
 
 /// Radial profile: exact, Eq. (1) as printed, and both over radii that crowd at the stick edge.
 Json exact_profile(const analytic::TorsionState& state) {
@@ -262,35 +291,76 @@ std::vector<Json> by_method(const std::vector<Json>& results, const std::string&
   return found;
 }
 
+Json to_json(const KnownField& field) {
+  Json json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}};
+  json.update(field.check);
+  return json;
+}
+
+/// The passing gate that is nearest to its bound; nullptr where none has a bound in numbers.
+const Judgement* nearest_to_bound(const std::vector<Judgement>& gates) {
+  const Judgement* found = nullptr;
+  for (const Judgement& gate : gates) {
+    const bool counts = gate.outcome == Outcome::passed && std::isfinite(gate.factor);
+    if (counts && (found == nullptr || gate.factor > found->factor)) found = &gate;
+  }
+  return found;
+}
+
+/// The gates that fail, pass unexpectedly or are refused.
+std::string wrong_gates(const std::vector<Judgement>& gates) {
+  std::string line;
+  for (const Judgement& gate : gates) {
+    if (gate.outcome == Outcome::failed || gate.outcome == Outcome::passed_unexpectedly ||
+        gate.outcome == Outcome::refused) {
+      line += fmt::format("; {} {}", gate.gate.id, to_string(gate.outcome));
+    }
+  }
+  return line;
+}
+
+long number_with(const std::vector<Judgement>& gates, Outcome outcome) {
+  return std::ranges::count(gates, outcome, &Judgement::outcome);
+}
+
+Finding judge_literature(const std::vector<Judgement>& gates) {
+  return {"Literature",
+          fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
+                      number_with(gates, Outcome::passed), gates.size(),
+                      number_with(gates, Outcome::failed_as_expected)) +
+              wrong_gates(gates),
+          shown(exit_code(gates) == 0)};
+}
+
+Finding judge_gates(const std::vector<Judgement>& gates) {
+  std::string line = fmt::format("{} of {} pass", number_with(gates, Outcome::passed), gates.size());
+  if (const long expected = number_with(gates, Outcome::failed_as_expected); expected > 0) {
+    line += fmt::format(", {} fails as expected", expected);
+  }
+  line += wrong_gates(gates);
+  if (const Judgement* const nearest = nearest_to_bound(gates); nearest != nullptr) {
+    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it", nearest->gate.id,
+                        100.0 * nearest->factor);
+  }
+  return {"Gates", line, shown(exit_code(gates) == 0)};
+}
+
+Finding judge_known_fields(const std::vector<KnownField>& peers) {
+  Finding found{"Fields of others", ""};
+  for (const KnownField& peer : peers) {
+    found.line += fmt::format("{}{} is {}", found.line.empty() ? "" : ", ", peer.program, peer.verdict);
+    if (peer.verdict == peer.expected) continue;
+    found.line += fmt::format(" (known to be {})", peer.expected);
+    found.shown = Shown::fails;
+  }
+  return found;
+}
+
 }  // namespace
 
-ValidationSize page_validation() {
-  return {.loading_cells = 128,
-          .mesh_cells = {32, 64, 128, 256},
-          .ellipse_cells = {64, 128, 256},
-          .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
-          .hard_step = 1,
-          .gates = true};
-}
-
-ValidationSize full_validation() {
-  ValidationSize size = page_validation();
-  size.mesh_cells.push_back(512);
-  size.ellipse_cells.push_back(512);
-  return size;
-}
-
-ValidationSize quick_validation() {
-  return {.loading_cells = 48,
-          .mesh_cells = {16, 32, 64},
-          .ellipse_cells = {32, 64},
-          .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
-          .hard_step = 10,
-          .gates = false};
-}
-
 PaperValidation validate(const Validation& request, const fs::path& folder, const ProcessPool& pool) {
-  const auto& [inputs, size] = request;
+  const auto& [inputs, effort] = request;
+  const ValidationSize size = size_for(effort);
   const fs::path scenes = inputs / "scenes";
   const fs::path scene_file = scenes / "paper.toml";
   const Oracle exact = *find_oracle(solver::read_scene(scene_file)).oracle;
@@ -314,11 +384,40 @@ PaperValidation validate(const Validation& request, const fs::path& folder, cons
            {"errata", errata(results.at("errata").front(), by_method(ellipses, "paper"))},
            {"cycle", cycle(results.at("cycle").front())},
            {"beyond", beyond_rows(results)}});
-  paper.hard = hard_results(inputs / "hard", size.hard_step, pool);
+  const bool all = effort != Effort::quick;
+  paper.hard = hard_results(inputs / "hard", all ? 1 : kQuickHardStep, pool);
   paper.peers = judge_peers(inputs);
-  paper.literature = literature(inputs / "literature", size.gates, pool);
-  if (size.gates) paper.gates = run_gates(read_gates(inputs / "gates" / "quick.toml"), pool);
+  paper.literature = literature(inputs / "literature", all, pool);
+  if (all) paper.gates = run_gates(read_gates(inputs / "gates" / "quick.toml"), pool);
   return paper;
+}
+
+std::vector<Finding> judge_validation(const PaperValidation& paper) {
+  Finding gates{"Gates", "not on a quick page; make gate runs them"};
+  if (paper.gates) gates = judge_gates(*paper.gates);
+  return {std::move(gates), judge_hard(paper.hard, "Hard scenes"), judge_known_fields(paper.peers),
+          judge_literature(paper.literature)};
+}
+
+Json counts_json(const PaperValidation& paper) {
+  Json counts{{"hard_scenes", counts_json(paper.hard)}};
+  if (paper.gates) {
+    counts.update(Json{{"gates", counts_json(*paper.gates)}});
+  } else {
+    set_missing(counts, "gates", "left out of a quick page");
+  }
+  return counts;
+}
+
+Json to_json(const PaperValidation& paper) {
+  Json json = paper.figures;
+  Json peers = Json::array();
+  for (const KnownField& peer : paper.peers) peers.push_back(to_json(peer));
+  json.update(Json{{"hard", to_json(paper.hard)},
+                   {"peers", std::move(peers)},
+                   {"literature", gates_json(paper.literature)}});
+  if (paper.gates) json.emplace("gates", gates_json(*paper.gates));
+  return json;
 }
 
 }  // namespace slipstick::convergence

@@ -9,9 +9,21 @@
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
+
+/// Whether a regular file has this content.
+bool has_content(const std::filesystem::path& file, const std::string& content) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  try {
+    return solver::read_input_file(file, solver::kLargestTextTable, "a regular file") == content;
+  } catch (const solver::InputError&) {
+    return false;
+  }
+}
 
 /// Keys of one object that are read in their order, which costs the square of their number: 10 ms.
 constexpr std::size_t kMaxOrderedKeys = 2000;
@@ -76,6 +88,11 @@ Json find_json(const std::filesystem::path& file) {
 
 std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+void write_json_file(const std::filesystem::path& file, const Json& json) {
+  const std::string content = json_text(json, 1) + "\n";
+  if (!has_content(file, content)) solver::write_whole_file(file, content);
 }
 
 }  // namespace slipstick::convergence

@@ -27,4 +27,7 @@ Json find_json(const std::filesystem::path& file);
 /// files, become U+FFFD.
 std::string json_text(const Json& json, int indent = -1);
 
+/// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
+void write_json_file(const std::filesystem::path& file, const Json& json);
+
 }  // namespace slipstick::convergence

@@ -22,17 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPrime = 1099511628211ULL;
 
-/// The bytes of a regular file, if there is one.
-std::optional<std::string> bytes_of(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return std::nullopt;
-  try {
-    return solver::read_input_file(file, solver::kLargestTextTable, "a regular file");
-  } catch (const solver::InputError&) {
-    return std::nullopt;
-  }
-}
-
 /// The JSON of a kept result; its `checksum` is over all other keys.
 Json entry(const std::string& program, const std::string& cache_key, const Json& result,
            const fs::path& beside) {
@@ -73,11 +62,6 @@ std::string file_identity(const fs::path& file) {
     size += read;
   } while (stream);
   return fmt::format("{} bytes, {:016x}", size, sum);
-}
-
-void write_json_file(const fs::path& file, const Json& json) {
-  const std::string content = json_text(json, 1) + "\n";
-  if (bytes_of(file) != content) solver::write_whole_file(file, content);
 }
 
 ResultCache::ResultCache(fs::path folder, const fs::path& program)

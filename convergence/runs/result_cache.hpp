@@ -46,7 +46,4 @@ std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before);
 /// A file by its content, the same for every copy of it.
 std::string file_identity(const std::filesystem::path& file);
 
-/// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
-void write_json_file(const std::filesystem::path& file, const Json& json);
-
 }  // namespace slipstick::convergence

@@ -177,8 +177,7 @@ Json attempt_json(const AttemptAccount& attempt) {
   return json;
 }
 
-}  // namespace
-
+/// Names surfaces outside the measured data, by which the first mesh is chosen; empty: none.
 std::string note_on(const Scene& scene) {
   for (const solver::Surface& surface : scene.surfaces) {
     if (surface.shape == solver::Shape::roughness) {
@@ -190,11 +189,15 @@ std::string note_on(const Scene& scene) {
              : "";
 }
 
+}  // namespace
+
 SolvePlan accuracy_plan(const Scene& given, AccuracyTarget target) {
+  require_reachable(given, target);
   if (given.solver.model == solver::ModelChoice::exact) return plan_solve(given);
   const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   SolvePlan plan = plan_solve(chosen_scene(scene, approach, first_choice(scene, approach, target)));
+  plan.note = note_on(scene);
   if (!approach.shifted) return plan;
   plan.grids = kShiftedGrids;
   plan.seconds *= kShiftedGrids;

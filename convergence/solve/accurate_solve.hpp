@@ -40,7 +40,7 @@ struct GridAccuracy {
   std::array<solver::Index, 2> replaced_cells{};  ///< the scene's cells and tolerance, which were replaced
   double replaced_tolerance = 0.0;
   std::optional<std::string> not_reached;  ///< why the target was not reached; none: it was
-  std::string note;                        ///< see note_on()
+  std::string note;                        ///< see SolvePlan
 };
 
 /// The account of an answer to a target; grid: none for an exact answer.
@@ -71,11 +71,8 @@ inline constexpr int kMaxRefinements = 3;
 /// See above. The scene's cells and tolerance are replaced. Throws InputError as choose_grid() and solve().
 AccurateAnswer solve_to_accuracy(const solver::Scene& scene, AccuracyTarget target, const GridSolve& solve);
 
-/// The plan of the first attempt.
+/// The plan of the first attempt. Throws InputError as require_reachable() and choose_grid().
 SolvePlan accuracy_plan(const solver::Scene& scene, AccuracyTarget target);
-
-/// Names surfaces outside the measured data, by which the first mesh is chosen; empty: none.
-std::string note_on(const solver::Scene& scene);
 
 /// The account of an exact answer: its own uncertainty. Throws InputError if that is above the target.
 Accuracy exact_accuracy(const solver::Scene& scene, const AccuracyTarget& target);

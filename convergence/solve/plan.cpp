@@ -122,6 +122,7 @@ Json to_json(const SolvePlan& plan) {
                   "machine",
                   kReferenceCells));
   if (plan.grids > 1) json.emplace("grids", plan.grids);
+  if (!plan.note.empty()) json.emplace("note", plan.note);
   return json;
 }
 
@@ -132,11 +133,13 @@ std::string plan_text(const SolvePlan& plan) {
       shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application", plan.ranks,
                            number_text(plan.sent_bytes))
              : "";
-  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}",
-                                       plan.grids > 1 ? fmt::format("{} grids of ", plan.grids) : "",
-                                       (*plan.cells)[0], (*plan.cells)[1], number_text(plan.unknowns),
-                                       number_text(plan.least_bytes), number_text(plan.bytes), of_rank,
-                                       short_text(plan.seconds), shared ? " on one" : ""));
+  const std::string text =
+      text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}",
+                                    plan.grids > 1 ? fmt::format("{} grids of ", plan.grids) : "",
+                                    (*plan.cells)[0], (*plan.cells)[1], number_text(plan.unknowns),
+                                    number_text(plan.least_bytes), number_text(plan.bytes), of_rank,
+                                    short_text(plan.seconds), shared ? " on one" : ""));
+  return plan.note.empty() ? text : text + text_line("note", plan.note);
 }
 
 }  // namespace slipstick::convergence

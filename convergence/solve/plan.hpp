@@ -29,6 +29,7 @@ struct SolvePlan {
   double sent_bytes = 0.0;  ///< by one rank for each application of the operator
   double seconds = 0.0;     ///< on one rank of this machine, of all grids; NaN: not measured for this method
   int grids = 1;            ///< solves whose mean is the answer
+  std::string note = {};    ///< names surfaces outside the data that chose the mesh; empty: none
 };
 
 /// Throws InputError as make_model(), and as require_oracle() for the exact model.

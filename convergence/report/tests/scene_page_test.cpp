@@ -31,7 +31,7 @@ TEST(WantedError, IsAQuantityAndANumber) {
 
 /// A few cells: everything is there, nothing is accurate.
 PageSize tiny() {
-  PageSize size = quick_page();
+  PageSize size = page_size(Effort::quick);
   size.most_cells = size.most_study_cells = 32;
   size.method_cells = 16;
   size.operator_cells = {8, 12};

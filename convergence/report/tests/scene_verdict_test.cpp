@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/orders/order.hpp"
+#include "convergence/report/validation.hpp"
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
@@ -42,8 +43,7 @@ Headline headline(const PaperValidation& paper, double twist = 1e-5, const char*
   Page page;
   page.provenance = {{"commit", commit}};
   page.numbers = {{.key = "twist_angle", .value = twist}};
-  page.paper = paper;
-  return headline_of(judge_validation(paper), page);
+  return headline_of(judge_validation(paper), counts_json(paper), page);
 }
 
 bool says(const Headline& headline, const std::string& words) {

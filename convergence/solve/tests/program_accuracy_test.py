@@ -119,6 +119,12 @@ class Plan(Solve):
         for key in ("cells", "tolerance"):
             self.assertEqual(plan[key], attempt[key])
 
+    def test_names_surfaces_outside_the_data_that_choose_its_mesh(self):
+        words = "--model auto --accuracy 1e-2 --plan"
+        self.assertNotIn("note", self.solved("paper", words)["plan"])
+        self.assertIn("rough", self.solved("rough_sphere", words)["plan"]["note"])
+        self.text("rough_sphere", words, says=["plan", "note"])
+
     def test_an_unknown_error_of_the_steps_is_never_reached(self):
         self.run_program(*command("dissimilar", "--accuracy 1e-1 --accuracy-of stick_radius --json unknown.json"), code=1)
         accuracy = json.loads(Path("unknown.json").read_text())["accuracy"]
