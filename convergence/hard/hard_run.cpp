@@ -1,16 +1,13 @@
 #include "convergence/hard/hard_run.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "solver/input/input_error.hpp"
-#include "solver/scene/scene_keys.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -274,18 +271,6 @@ std::string methods_text(const HardResult& result) {
 }
 
 }  // namespace
-
-BesideMethod read_beside_method(const std::string& word) {
-  if (word.ends_with(".toml")) return {read_solver_program(word).name, program_override(word), true};
-  std::vector<std::string> allowed;
-  for (const auto& [name, method] : solver::kMethods) {
-    if (name == word) return {name, fmt::format("solver.method=\"{}\"", name), false};
-    allowed.push_back(name);
-  }
-  throw solver::InputError("--beside " + word, fmt::format("is no method; allowed: {}, or a program's file "
-                                                           "(.toml)",
-                                                           fmt::join(allowed, ", ")));
-}
 
 std::array<std::size_t, 4> HardResult::counts(const std::string& family) const {
   std::array<std::size_t, 4> counts{};

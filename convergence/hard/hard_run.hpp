@@ -13,15 +13,6 @@
 
 namespace slipstick::convergence {
 
-/// Another method for each scene: its name, and the override of the scene's keys that chooses it.
-struct BesideMethod {
-  std::string name;
-  std::string override;
-  bool is_program = false;
-};
-/// A word of solver.method, or the file of a program (TOML). Throws InputError for anything else.
-BesideMethod read_beside_method(const std::string& word);
-
 struct HardOptions {
   bool variants = true;                    ///< also solve equivalent scenes, see Variant
   bool finer_meshes = true;                ///< also solve scenes without an exact answer on finer meshes

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
@@ -213,6 +214,28 @@ SceneDescription::Gap gap_of_bodies(const solver::Model& model, const solver::Gr
 
 }  // namespace
 
+PageSize page_size(Effort effort) {
+  if (effort == Effort::quick) {
+    return {.most_cells = 64,
+            .most_study_cells = 64,
+            .shifts = 1,
+            .method_cells = 32,
+            .operator_cells = {8, 12, 16, 24},
+            .repetitions = 2,
+            .finer_meshes = false,
+            .long_history = 40};
+  }
+  const bool full = effort == Effort::full;
+  return {.most_cells = full ? 1024 : 256,
+          .most_study_cells = full ? 1024 : 256,
+          .shifts = 4,
+          .method_cells = full ? 128 : 64,
+          .operator_cells = {8, 12, 16, 24, 32, 48},
+          .repetitions = 3,
+          .finer_meshes = true,
+          .long_history = std::numeric_limits<std::size_t>::max()};
+}
+
 std::string Headline::verdict() const {
   constexpr const char* kVerdicts[] = {"good", "open", "bad"};
   Shown worst = Shown::holds;
@@ -254,11 +277,11 @@ Json to_json(const SceneCosts& costs) {
 Json to_json(const Page& page) {
   Json json{{"provenance", page.provenance}, {"scene", to_json(page.scene)}, {"answer", page.answer}};
   set(json, "check", page.check);
-  json.update(Json{{"studies", list(page.studies)}, {"numbers", list(page.numbers)}});
+  json.update(Json{{"studies", page.studies}, {"numbers", list(page.numbers)}});
   set(json, "uncertainty", page.uncertainty);
   if (page.costs) json.update(to_json(*page.costs));
-  if (page.hard) json.emplace("hard", to_json(*page.hard));
-  if (page.digits) json.emplace("digits", to_json(*page.digits));
+  set(json, "hard", page.hard);
+  set(json, "digits", page.digits);
   set(json, "paper", page.paper);
   json.emplace("headline", to_json(page.headline));
   return json;

@@ -6,17 +6,40 @@
 #include <utility>
 #include <vector>
 
-#include "convergence/hard/hard_run.hpp"
-#include "convergence/hard/rounding_digits.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/studies/study_result.hpp"
-#include "solver/scene/scene.hpp"
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+struct Scene;
+}
 
 /// The page of a scene as a value: docs/schema/report.schema.json has the same names.
 namespace slipstick::convergence {
 
 /// The work that a page may take: seconds, a minute or two, or some minutes more.
 enum class Effort { quick, usual, full };
+
+/// The size of a page.
+struct PageSize {
+  solver::Index most_cells;  ///< along the longer side of the answer's mesh; a scene with fewer keeps its own
+  /// Bound of the study's finest mesh, which else has twice the answer's cells.
+  solver::Index most_study_cells;
+  int shifts;                          ///< grids of each mesh, see Study; two for a history
+  solver::Index method_cells;          ///< the finest mesh on which methods are compared
+  std::vector<double> operator_cells;  ///< meshes for direct sums against convolution
+  int repetitions;                     ///< of each of these times
+  bool finer_meshes;                   ///< hard variants are also solved on finer meshes
+  std::size_t long_history;            ///< a history with more steps has half as fine meshes
+};
+PageSize page_size(Effort effort);
+
+/// The validation of the paper. inputs: the folder with scenes/, hard/, check/fields/, gates/ and
+/// literature/. A quick validation takes every tenth hard case, and omits the gates and the studies of the
+/// literature.
+struct Validation {
+  std::filesystem::path inputs;
+  Effort effort;
+};
 
 /// A scene in words. text: its file; summary: labels and values.
 struct SceneDescription {
@@ -139,18 +162,19 @@ struct Headline {
 };
 Json to_json(const Headline& headline);
 
-/// The parts that a page need not have are optional.
+/// The parts that a page need not have are optional. A part that another command makes, too, is the JSON of
+/// that command.
 struct Page {
   Json provenance = {};
   SceneDescription scene = {};
   Json answer = {};  ///< result on the finest mesh
   std::optional<Json> check = {};
-  std::vector<StudyResult> studies = {};  ///< of meshes, unless the scene has its own, and of tolerances
+  Json studies = Json::array();  ///< of meshes, unless the scene has its own, and of tolerances
   std::vector<PageNumber> numbers = {};
   std::optional<Json> uncertainty = {};
   std::optional<Costs> costs = {};
-  std::optional<HardResult> hard = {};
-  std::optional<DigitsResult> digits = {};
+  std::optional<Json> hard = {};
+  std::optional<Json> digits = {};
   std::optional<Json> paper = {};  ///< the validation of the paper
   Headline headline = {};
 };

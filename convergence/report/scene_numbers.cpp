@@ -200,28 +200,6 @@ PageSize for_program(PageSize size) {
   return size;
 }
 
-PageSize page_size(Effort effort) {
-  if (effort == Effort::quick) {
-    return {.most_cells = 64,
-            .most_study_cells = 64,
-            .shifts = 1,
-            .method_cells = 32,
-            .operator_cells = {8, 12, 16, 24},
-            .repetitions = 2,
-            .finer_meshes = false,
-            .long_history = 40};
-  }
-  const bool full = effort == Effort::full;
-  return {.most_cells = full ? 1024 : 256,
-          .most_study_cells = full ? 1024 : 256,
-          .shifts = 4,
-          .method_cells = full ? 128 : 64,
-          .operator_cells = {8, 12, 16, 24, 32, 48},
-          .repetitions = 3,
-          .finer_meshes = true,
-          .long_history = std::numeric_limits<std::size_t>::max()};
-}
-
 Meshes meshes_of(const Scene& scene, const PageSize& size) {
   if (has_given_grid(scene)) return {true, {}, {}};
   const Index finest = std::max(std::min(longer_side(scene), size.most_cells), 4 * kFewestCells);

@@ -13,20 +13,7 @@
 /// The numbers of a page, with the meshes and studies from which their errors follow.
 namespace slipstick::convergence {
 
-/// The size of a page.
-struct PageSize {
-  solver::Index most_cells;  ///< along the longer side of the answer's mesh; a scene with fewer keeps its own
-  /// Bound of the study's finest mesh, which else has twice the answer's cells.
-  solver::Index most_study_cells;
-  int shifts;                          ///< grids of each mesh, see Study; two for a history
-  solver::Index method_cells;          ///< the finest mesh on which methods are compared
-  std::vector<double> operator_cells;  ///< meshes for direct sums against convolution
-  int repetitions;                     ///< of each of these times
-  bool finer_meshes;                   ///< hard variants are also solved on finer meshes
-  std::size_t long_history;            ///< a history with more steps has half as fine meshes
-};
-PageSize page_size(Effort effort);
-/// The same for another program, which may take a hundred times as long.
+/// The size of a page of another program, which may take a hundred times as long.
 PageSize for_program(PageSize size);
 
 /// The meshes on which a scene is solved, cells along the longer side, rising; empty where the files of the

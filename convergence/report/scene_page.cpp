@@ -9,12 +9,15 @@
 #include <limits>
 
 #include "convergence/check/check.hpp"
+#include "convergence/hard/hard_run.hpp"
+#include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/order.hpp"
 #include "convergence/report/scene_cost.hpp"
+#include "convergence/report/scene_numbers.hpp"
+#include "convergence/report/validation.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/uncertainty.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
@@ -137,21 +140,23 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   if (!at.own && has_tractions(page.answer)) page.check = check_program(at, page.answer, fields);
   std::vector<Finding> findings{judge_answer(page)};
   Json counts = Json::object();
-  page.studies = scene_studies(at, pool);
-  page.numbers = number_rows(at.scene, results, page.studies.front());
+  const std::vector<StudyResult> studies = scene_studies(at, pool);
+  for (const StudyResult& study : studies) page.studies.push_back(to_json(study));
+  page.numbers = number_rows(at.scene, results, studies.front());
   const Reference reference = reference_of(page.answer, page.numbers);
   for (const WantedError& each : request.wanted) findings.push_back(judge_wanted(each, page.numbers));
   if (std::ranges::find(request.wanted, reference.number, &WantedError::quantity) == request.wanted.end())
     findings.push_back(judge_accuracy(page.numbers, reference.number));
   if (!uncertain.empty()) page.uncertainty = uncertainty(at, page.answer, uncertain);
-  findings.push_back(judge_order(page.studies.front(), reference.number, words_of(reference.number)));
+  findings.push_back(judge_order(studies.front(), reference.number, words_of(reference.number)));
   if (!at.meshes.given) page.costs = costs_of(at, {request.beside, page.numbers, reference}, pool);
   if (at.own || has_tractions(page.answer)) {
-    page.hard = hard_variants(at, page.answer, request.beside, pool);
-    findings.push_back(at.own ? judge_hard(*page.hard, "Hard variants") : judge_hard_beside(*page.hard));
-    counts.emplace("hard", counts_json(*page.hard));
+    const HardResult hard = hard_variants(at, page.answer, request.beside, pool);
+    findings.push_back(at.own ? judge_hard(hard, "Hard variants") : judge_hard_beside(hard));
+    counts.emplace("hard", counts_json(hard));
+    page.hard = to_json(hard);
   }
-  if (at.own) page.digits = rounding_digits(at.on_coarsest(), {.samples = kRoundingSamples}, pool);
+  if (at.own) page.digits = to_json(rounding_digits(at.on_coarsest(), {.samples = kRoundingSamples}, pool));
   if (request.validation) {
     const PaperValidation paper = validate(*request.validation, folder, pool);
     std::ranges::move(judge_validation(paper), std::back_inserter(findings));

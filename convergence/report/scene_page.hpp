@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "convergence/report/page.hpp"
-#include "convergence/report/scene_numbers.hpp"
 #include "convergence/report/scene_verdict.hpp"
-#include "convergence/report/validation.hpp"
 #include "convergence/runs/process_pool.hpp"
 
 /// The page of any scene: description, answer, orders of convergence, error against time, hard cases; for the

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "convergence/hard/hard_run.hpp"
 #include "convergence/report/scene_numbers.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"

@@ -9,6 +9,9 @@
 /// The findings on which the verdict of a page rests, its headline, and the changes since the page before.
 namespace slipstick::convergence {
 
+struct HardResult;
+struct StudyResult;
+
 /// The solve converged and its gap is within the tolerance.
 Finding judge_certificate(const Json& answer);
 

@@ -36,13 +36,6 @@ struct PaperValidation {
   std::optional<std::vector<Judgement>> gates = {};  ///< none on a quick page
 };
 
-/// inputs: the folder with scenes/, hard/, check/fields/, gates/ and literature/. A quick validation takes
-/// every tenth hard case, and omits the gates and the studies of the literature.
-struct Validation {
-  std::filesystem::path inputs;
-  Effort effort;
-};
-
 /// Writes the fields that the page draws into `folder`. Throws std::runtime_error where a run has no result,
 /// and as the pool does.
 PaperValidation validate(const Validation& request, const std::filesystem::path& folder,

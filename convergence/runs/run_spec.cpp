@@ -1,6 +1,6 @@
 #include "convergence/runs/run_spec.hpp"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,9 @@
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
@@ -196,6 +198,18 @@ Scene transformed(Scene scene, Variant variant) {
 RunSpec changed(RunSpec run, const std::vector<std::string>& overrides) {
   run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
   return run;
+}
+
+BesideMethod read_beside_method(const std::string& word) {
+  if (word.ends_with(".toml")) return {read_solver_program(word).name, program_override(word), true};
+  std::vector<std::string> allowed;
+  for (const auto& [name, method] : solver::kMethods) {
+    if (name == word) return {name, fmt::format("solver.method=\"{}\"", name), false};
+    allowed.push_back(name);
+  }
+  throw solver::InputError("--beside " + word, fmt::format("is no method; allowed: {}, or a program's file "
+                                                           "(.toml)",
+                                                           fmt::join(allowed, ", ")));
 }
 
 std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line) {

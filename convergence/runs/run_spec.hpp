@@ -54,6 +54,15 @@ struct RunSpec {
 /// The same run with further overrides, which have priority.
 RunSpec changed(RunSpec run, const std::vector<std::string>& overrides);
 
+/// Another method for each scene: its name, and the override of the scene's keys that chooses it.
+struct BesideMethod {
+  std::string name;
+  std::string override;
+  bool is_program = false;
+};
+/// A word of solver.method, or the file of a program (TOML). Throws InputError for anything else.
+BesideMethod read_beside_method(const std::string& word);
+
 /// The complaint of a message about an override that the file of a study or gate gives; empty if the message
 /// is about the command line.
 std::string complaint_of_file(const std::string& message, const std::vector<std::string>& command_line);
