@@ -150,9 +150,10 @@ class Tabulated final : public Profile {
               return -piece.slope(inward) / rho;
             }));
   }
-  /// At most some of the knots: the curvature's jumps at the others are the smaller the more there are.
+  /// All knots, or every so many of them: the jumps of the curvature at the others then cost up to 1e-7 of
+  /// the largest stress.
   std::vector<double> kinks() const override {
-    constexpr std::size_t kMost = 64;
+    constexpr std::size_t kMost = 256;
     const std::size_t step = (pieces_.size() + kMost - 1) / kMost;
     std::vector<double> list;
     for (std::size_t i = step; i < pieces_.size(); i += step) list.push_back(pieces_[i].low());

@@ -33,9 +33,45 @@ static void to_json(Json& json, const CycleState& state) {
           {"tangent_stiffness", state.tangent_stiffness}};
 }
 
+namespace {
+
+/// A stress's key in the JSON, its name and symbol for a person, and its value.
+struct StressRow {
+  const char* key;
+  const char* label;
+  const char* symbol;
+  double value;
+};
+
+std::vector<StressRow> rows(const AtPoint& point) {
+  std::vector<StressRow> list;
+  const auto& [rr, tt, zz, rz] = point.pressure;
+  if (!std::isnan(rr))
+    list = {{"sigma_rr", "stress rr", "sigma_rr/p0", rr},
+            {"sigma_tt", "stress tt (hoop)", "sigma_tt/p0", tt},
+            {"sigma_zz", "stress zz", "sigma_zz/p0", zz},
+            {"sigma_rz", "stress rz", "sigma_rz/p0", rz}};
+  list.push_back({"sigma_rt", "stress rt", "sigma_rt/(mu p0)", point.torsion.rt});
+  list.push_back({"sigma_tz", "stress tz", "sigma_tz/(mu p0)", point.torsion.tz});
+  if (!point.severity || std::isnan(rr)) return list;
+  const auto& [von_mises, tresca, tension] = *point.severity;
+  list.push_back({"von_mises", "von Mises stress", "sigma_v/p0", von_mises});
+  list.push_back({"tresca", "Tresca stress", "(s1 - s3)/p0", tresca});
+  list.push_back({"tension", "principal stress", "s1/p0", tension});
+  return list;
+}
+
+}  // namespace
+
+static void to_json(Json& json, const AtPoint& point) {
+  json = {{"radius", point.at.radius}, {"depth", point.at.depth}};
+  for (const StressRow& row : rows(point)) json[row.key] = row.value;
+}
+
 static void to_json(Json& json, const CyclePoint& point) {
   json = point.state;
   json.update({{"traction", point.traction}});
+  if (!point.stresses.empty()) json.update({{"stresses", point.stresses}});
 }
 
 namespace {
@@ -210,12 +246,29 @@ void write_tractions(std::ostream& out, const AtRadii& tractions, const AtRadii*
   }
 }
 
+void write_stresses(std::ostream& out, const AtPoints& points) {
+  for (const AtPoint& point : points) {
+    out << fmt::format("at r/a = {:.9g}, depth z/a = {:.9g}:\n", point.at.radius, point.at.depth);
+    for (const auto& [key, label, symbol, value] : rows(point)) write_line(out, label, symbol, {value});
+  }
+}
+
 void write_certified_row(std::ostream& out, const std::string& name, const std::string& symbol,
                          const certified::Number& number) {
   out << fmt::format("{:<20}{:<20}{}\n{:<40}+/- {}\n", name, symbol, number.value, "", number.radius);
 }
 
 }  // namespace
+
+AtPoints at_points(const StressField& field, const std::vector<BodyPoint>& points, double poisson,
+                   const std::optional<double>& friction) {
+  AtPoints list;
+  for (const BodyPoint at : points) {
+    list.push_back({at, field.by_pressure(at, poisson), field.by_torsion(at)});
+    if (friction) list.back().severity = severity(list.back().pressure, list.back().torsion, *friction);
+  }
+  return list;
+}
 
 StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
                          const std::vector<double>& radii, const std::optional<double>& unload_to) {
@@ -255,6 +308,7 @@ Json to_json(const StateAnswer& answer) {
   Json json = numbers_json(answer.numbers);
   put(json, "energy_lost_per_cycle", answer.energy_lost_per_cycle);
   json.update(contact_json(answer.contact));
+  if (!answer.stresses.empty()) json.update({{"stresses", answer.stresses}});
   if (answer.unloaded) json.update({{"unloaded", *answer.unloaded}});
   if (const auto& errors = answer.errors) {
     Json estimate = numbers_json(errors->numbers);
@@ -329,13 +383,15 @@ void write(std::ostream& out, const StateAnswer& answer) {
   write_line(out, "loss per cycle", "of (mu W)^2/(G a)", answer.energy_lost_per_cycle);
   write_tractions(out, answer.numbers.traction, printed ? &printed->equation_1 : nullptr,
                   errors ? &errors->numbers.traction : nullptr);
+  write_stresses(out, answer.stresses);
   if (answer.unloaded) {
-    const auto& [state, tractions] = *answer.unloaded;
+    const auto& [state, tractions, stresses] = *answer.unloaded;
     out << fmt::format("\nback at M/M_lim = {:.9g}:\n", state.moment_ratio);
     write_line(out, "twist", "G a^2 phi/(mu W)", {state.twist});
     write_line(out, "front", "a_s/a", {state.stick_ratio});
     write_line(out, "dissipated", "of (mu W)^2/(G a)", {state.dissipated});
     write_tractions(out, tractions);
+    write_stresses(out, stresses);
   }
   write_units(out, answer.units);
   if (!printed) return;
@@ -352,13 +408,14 @@ void write(std::ostream& out, const HistoryAnswer& answer) {
   if (answer.contact.profile.table) write_no_errors(out, "for the histories of a table there is none");
   out << fmt::format("{:>12}{:>26}{:>23}{:>27}\n", "M/M_lim", "twist G a^2 phi/(mu W)", "front a_s/a",
                      "lost, of (mu W)^2/(G a)");
-  for (const auto& [state, tractions] : answer.history)
+  for (const auto& [state, tractions, stresses] : answer.history)
     out << fmt::format("{:>12.9g}{:>26.15g}{:>23.15g}{:>27.15g}\n", state.moment_ratio, state.twist,
                        state.stick_ratio, state.dissipated);
-  for (const auto& [state, tractions] : answer.history) {
-    if (tractions.empty()) continue;
+  for (const auto& [state, tractions, stresses] : answer.history) {
+    if (tractions.empty() && stresses.empty()) continue;
     out << fmt::format("\nat M/M_lim = {:.9g}\n", state.moment_ratio);
     write_tractions(out, tractions);
+    write_stresses(out, stresses);
   }
   write_units(out, answer.units);
   out << fmt::format("\nThe curve has {} points (--json FILE).\n", answer.curve.size());

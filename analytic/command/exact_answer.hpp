@@ -11,6 +11,7 @@
 #include "analytic/certified/certified.hpp"
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"
+#include "analytic/stresses/stress_field.hpp"
 #include "analytic/torsion.hpp"
 
 /// The answers of the command `exact`, their JSON, and their text for a person.
@@ -71,6 +72,17 @@ struct AtRadius {
 };
 using AtRadii = std::vector<AtRadius>;
 
+/// Stresses at a point, and with a friction coefficient how severe both parts are together.
+struct AtPoint {
+  BodyPoint at;
+  PressureStress pressure;
+  TorsionStress torsion;
+  std::optional<Severity> severity = {};
+};
+using AtPoints = std::vector<AtPoint>;
+AtPoints at_points(const StressField& field, const std::vector<BodyPoint>& points, double poisson,
+                   const std::optional<double>& friction);
+
 struct StateNumbers {
   TorsionState state;
   AtRadii traction;
@@ -95,6 +107,7 @@ struct OtherLaws {
 struct CyclePoint {
   CycleState state;
   AtRadii traction;
+  AtPoints stresses = {};
 };
 
 /// A result in SI units.
@@ -110,6 +123,7 @@ struct StateAnswer {
   ExactContact contact;
   StateNumbers numbers;
   Number energy_lost_per_cycle;
+  AtPoints stresses = {};
   std::optional<CyclePoint> unloaded = {};
   std::optional<TableErrors> errors = {};
   std::string errors_missing = {};  ///< the reason, where a table's errors are

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <memory>
@@ -43,6 +44,8 @@ struct Options {
   std::array<std::string, kGiven.size()> value;
   std::array<const CLI::Option*, kGiven.size()> given{};
   std::vector<std::string> radii;
+  std::vector<std::string> at;
+  double poisson = 0.3;
   std::string profile = "hertz";
   std::optional<int> certified;
   std::optional<double> unload_to;
@@ -108,6 +111,20 @@ std::size_t given(const Options& options) {
   throw std::invalid_argument("exact: no state given");
 }
 
+/// The stresses at the points asked for.
+template <class State>
+AtPoints stresses(const Options& options, const State& state, const Profile& profile) {
+  return naming("--at", [&] {
+    std::vector<BodyPoint> points;
+    for (const std::string& text : options.at) {
+      const auto comma = std::min(text.find(','), text.size());
+      points.push_back(
+          {number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
+    }
+    return at_points({state, profile}, points, options.poisson, options.friction);
+  });
+}
+
 template <class Answer>
 int give(const Answer& answer, std::ostream& out, Json& result) {
   result = to_json(answer);
@@ -117,11 +134,16 @@ int give(const Answer& answer, std::ostream& out, Json& result) {
 
 int run(const Options& options, std::ostream& out, Json& result) {
   const ExactContact exact = contact(options);
+  const Profile& profile = *exact.profile.profile;
   if (!options.history.empty()) {
-    const auto answer = [&] {
-      return answer_history(exact, options.history, options.points, radii(options));
-    };
-    return give(naming("--history", answer), out, result);
+    HistoryAnswer answer = naming(
+        "--history", [&] { return answer_history(exact, options.history, options.points, radii(options)); });
+    LoadingHistory history(profile);
+    for (CyclePoint& point : answer.history) {
+      history.load_to(point.state.moment_ratio);
+      point.stresses = stresses(options, history, profile);
+    }
+    return give(answer, out, result);
   }
   const Given& from = kGiven[given(options)];
   const std::string& text = options.value[given(options)];
@@ -137,7 +159,15 @@ int run(const Options& options, std::ostream& out, Json& result) {
   const StateOf state_of = [&](const Profile& profile) {
     return naming(from.option, [&] { return from.state(value, profile); });
   };
-  return give(answer_state(exact, state_of, at, options.unload_to), out, result);
+  StateAnswer answer = answer_state(exact, state_of, at, options.unload_to);
+  answer.stresses = stresses(options, answer.numbers.state, profile);
+  if (answer.unloaded) {
+    LoadingHistory history(profile);
+    history.load_to(answer.numbers.state.moment_ratio);
+    history.load_to(*options.unload_to);
+    answer.unloaded->stresses = stresses(options, history, profile);
+  }
+  return give(answer, out, result);
 }
 
 void add_state_options(CLI::App& exact, Options& options) {
@@ -155,10 +185,17 @@ void add_state_options(CLI::App& exact, Options& options) {
   CLI::Option* unload = exact.add_option("--unload-to", options.unload_to,
                                          "M/M_lim to unload to from the state, normal load constant");
   unload->excludes(history);
+  CLI::Option* at =
+      exact.add_option("--at", options.at, "r,z over a, z the depth: stresses there; once for each point");
+  exact.add_option("--poisson", options.poisson, "nu of the body whose stresses are asked for")
+      ->check(CLI::Range(-1.0, 0.5))
+      ->needs(at)
+      ->capture_default_str();
   exact.add_option("--certified", options.certified, "print each number with N proven digits, 15..100")
       ->check(CLI::Range(15, 100))
       ->excludes(history)
-      ->excludes(unload);
+      ->excludes(unload)
+      ->excludes(at);
 }
 
 void add_units_options(CLI::App& exact, Options& options) {
@@ -170,11 +207,12 @@ void add_units_options(CLI::App& exact, Options& options) {
   load->needs(modulus)->needs(shape);
   modulus->needs(load);
   shape->needs(load);
-  CLI::Option* friction = exact.add_option("--friction", options.friction, "mu: gives moments in N m");
-  friction->needs(load)->check(CLI::PositiveNumber);
+  CLI::Option* friction = exact.add_option(
+      "--friction", options.friction, "mu: with --normal-load moments in N m, with --at von Mises' stress");
+  friction->check(CLI::PositiveNumber);
   CLI::Option* shear = exact.add_option("--shear-modulus", options.shear_modulus,
                                         "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad");
-  shear->needs(friction)->check(CLI::PositiveNumber);
+  shear->needs(friction)->needs(load)->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -191,6 +229,7 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
   exact->footer(
       "Examples: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8\n"
       "          slipstick exact --moment-ratio 0.5 --certified 50\n"
+      "          slipstick exact --moment-ratio 0.9 --at 0,0.48 --at 0.5,0 --friction 0.3\n"
       "          slipstick exact --profile cone --history 0.8,-0.8,0.8 --json loop.json");
   return [options](std::ostream& out, Json& result) { return run(*options, out, result); };
 }

@@ -190,7 +190,7 @@ class Discs {
   double length_;
 };
 
-/// Calls f with discs of all radii from `low` on; each disc stands for a part of the integral over ds.
+/// Calls f with discs of all radii from `low` on, whose weights are parts of ds.
 template <class Function>
 void over_discs(StickRadius low, const Profile& profile, BodyPoint at, const Function& f) {
   if (low.complement == 0) return;
@@ -263,30 +263,19 @@ StressField::StressField(const LoadingHistory& history, const Profile& profile) 
     parts_.push_back({weight, from_moment_ratio(amplitude, profile)});
 }
 
-bool StressField::has_pressure() const {
-  return !std::isnan(profile_->punch_density({.ratio = 0.5, .complement = 0.5}));
-}
-
-std::vector<double> StressField::fronts() const {
-  std::vector<double> list;
-  for (const Part& part : parts_) list.push_back(part.state.stick_ratio);
-  return list;
-}
-
 PressureStress StressField::by_pressure(BodyPoint point, double poisson) const {
   if (!(poisson > -1 && poisson <= 0.5)) out_of_range("nu", poisson, "-1 < nu <= 1/2");
   const BodyPoint at = checked(point, *profile_);
   Potentials sum{};
+  const double known = profile_->punch_density({.ratio = 0.5, .complement = 0.5});
+  if (std::isnan(known)) return {known, known, known, known};
   if (profile_ == &hertz_profile() && std::hypot(at.radius, at.depth) < kOutside) {
     sum = of_hertz(at);
-  } else if (has_pressure()) {
+  } else {
     over_discs({.ratio = 0, .complement = 1}, *profile_, at, [&](const Disc& disc) {
       sum.add(of_punch(at, disc), disc.weight * profile_->punch_density(disc.radius));
     });
     if (profile_->edge() > 0) sum.add(of_punch(at, edge_disc(at)), 2 / pi * profile_->edge());
-  } else {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    return {kUnknown, kUnknown, kUnknown, kUnknown};
   }
   const double tt = (1 - 2 * poisson) * sum.l_r_over_r + sum.z_v_r_over_r - 2 * poisson * sum.chi;
   return {.rr = -(1 + 2 * poisson) * sum.chi - sum.z_chi_z - tt,

@@ -40,8 +40,8 @@ struct Severity {
 };
 Severity severity(const PressureStress& pressure, const TorsionStress& torsion, double friction);
 
-/// The stresses of one state. Error at most 1e-12 of the largest stress for profiles with a closed form,
-/// powers and rounded punches, 1e-9 for tables. The profile must outlive the field.
+/// The stresses of one state. Error at most 1e-12 of the largest stress, for tables of more than 257 points
+/// 1e-7. The profile must outlive the field.
 ///
 /// Every stress is an integral over rigid flat discs of radii s (torsion: Reissner and Sagoci 1944, pressure:
 /// Boussinesq, Sneddon 1965), whose stresses are elementary functions of R = sqrt(r^2 + (z + i s)^2); Hertz's
@@ -57,12 +57,6 @@ class StressField {
   PressureStress by_pressure(BodyPoint point, double poisson) const;
   TorsionStress by_torsion(BodyPoint point) const;
 
-  /// Whether it knows the pressure.
-  bool has_pressure() const;
-  const Profile& profile() const { return *profile_; }
-  /// The fronts of slip, over a.
-  std::vector<double> fronts() const;
-
  private:
   struct Part {
     double weight;
@@ -71,22 +65,5 @@ class StressField {
   const Profile* profile_;
   std::vector<Part> parts_;
 };
-
-/// Where a stress is largest in the body.
-struct LargestStress {
-  double value;
-  BodyPoint at;
-};
-
-/// The largest of each member of Severity. The value's relative error is some 1e-12, that of the place 1e-6.
-/// Throws std::domain_error where a stress is infinite somewhere (a pressure that does not end at zero, or
-/// infinite on the axis), or the pressure unknown.
-struct LargestSeverity {
-  LargestStress von_mises;
-  LargestStress tresca;
-  LargestStress tension;
-};
-LargestStress largest(const StressField& field, double friction, double poisson, double Severity::*measure);
-LargestSeverity largest(const StressField& field, double friction, double poisson);
 
 }  // namespace slipstick::analytic

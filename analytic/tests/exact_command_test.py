@@ -159,6 +159,29 @@ class Exact(ProgramTest):
         for key in ("moment_ratio", "twist", "stick_ratio", "traction"):
             self.assertEqual(history[5][key], history[0][key], f"the loop closes: {key}")
 
+    def test_stresses_below_the_surface(self):
+        state = "--moment-ratio 0.9 --at 0.5,0 --at 0,0.5 --radius 0.5"
+        found = self.json(state)
+        surface, axis = found["stresses"]
+        self.near(surface["sigma_tz"], found["traction"][0]["value"], 1e-13)
+        self.near(surface["sigma_zz"], -math.sqrt(0.75), 1e-15)
+        self.near(axis["sigma_zz"], -0.8, 1e-15)  # -1/(1 + z^2), Hertz
+        self.assertEqual((axis["radius"], axis["depth"], axis["sigma_rt"], axis["sigma_tz"]), (0, 0.5, 0, 0))
+        self.assertNotIn("von_mises", axis)
+        both = self.json(f"{state} --friction 0.3 --poisson 0.5")["stresses"][1]
+        self.near(both["von_mises"], 1.2 - 1.5 * (1 - 0.5 * math.atan(2)), 1e-15)
+        self.near(both["tresca"], both["von_mises"], 1e-15)
+        self.text(f"{state} --friction 0.3", says=["at r/a = 0, depth z/a = 0.5", "von Mises"])
+        self.assertNotIn("sigma_zz", self.json(f"{state} --profile constant")["stresses"][0])
+        # Back at minus the moment everything of the torsion has changed its sign.
+        back = self.json(f"{state} --unload-to=-0.9")["unloaded"]["stresses"]
+        loop = self.json("--history 0.9,-0.9 --at 0.5,0 --at 0,0.5")["history"][1]["stresses"]
+        self.assertEqual(back, loop)
+        self.near(back[0]["sigma_tz"], -surface["sigma_tz"], 1e-13)
+        for words, *says in (("--at 0.5", "--at"), ("--at 0.5,-1", "--at", "z/a = -1"), ("--at 0.5,1,2", "1,2"), ("--at 1,nan", "z/a = nan"),
+                             ("--at 1,0 --profile flat_punch", "infinite there"), ("--at 0,1 --certified 20", )):
+            self.refused(f"--moment-ratio 0.5 {words}", *says)
+
     def test_units_are_hertzs(self):
         found = self.json("--moment-ratio 0.5 --normal-load 1000 --effective-modulus 1.154e11 --shape 0.018 "
                           "--friction 0.1 --shear-modulus 4.04e10")

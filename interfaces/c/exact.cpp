@@ -230,22 +230,6 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
   });
 }
 
-int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
-                                   double friction, double poisson, int measure, slipstick_largest* result) {
-  return c::with_profile(profile, [&](const analytic::Profile& shape) {
-    constexpr std::array kMeasures{&analytic::Severity::von_mises, &analytic::Severity::tresca,
-                                   &analytic::Severity::tension};
-    c::require(result, "result");
-    if (!(measure >= 0 && measure < static_cast<int>(kMeasures.size())))
-      throw std::invalid_argument(
-          fmt::format("measure = {}; allowed: 0 to {}", measure, kMeasures.size() - 1));
-    const analytic::LargestStress found =
-        analytic::largest(c::stress_field(shape, given, c::array(values, n_values, "values"), friction),
-                          friction, poisson, kMeasures[static_cast<std::size_t>(measure)]);
-    *result = {found.value, found.at.radius, found.at.depth};
-  });
-}
-
 int slipstick_exact_indentation(const char* profile, double load, double effective_modulus, size_t n_shape,
                                 const double* shape, slipstick_indentation* result) {
   return c::guarded([&] {

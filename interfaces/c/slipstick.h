@@ -135,15 +135,6 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
                              double friction, double poisson, size_t n, const double* radii,
                              const double* depths, slipstick_stress* results);
 
-/* The largest of von_mises (measure 0), tresca (1) or tension (2) in the body, and where it is. */
-typedef struct slipstick_largest {
-  double value;
-  double radius;
-  double depth;
-} slipstick_largest;
-int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
-                                   double friction, double poisson, int measure, slipstick_largest* result);
-
 /* The contact under a normal load, in SI units. shape: "hertz": sphere radius; "cone": slope;
  * "flat_punch": radius; "power:N": the gap's coefficient; "rounded_punch": flat radius, corner radius. */
 typedef struct slipstick_indentation {

@@ -103,7 +103,6 @@ static void test_histories(const char* profile) {
 static void test_stresses(void) {
   const double value = 0.9, radii[2] = {0, 0.5}, depths[2] = {0.5, 0};
   slipstick_stress stress[2];
-  slipstick_largest most;
   double traction;
   check(slipstick_exact_stresses("hertz", 0, 1, &value, 0.3, 0.3, 2, radii, depths, stress) == SLIPSTICK_OK &&
             near(stress[0].zz, -0.8, 1e-14),
@@ -111,12 +110,6 @@ static void test_stresses(void) {
   check(slipstick_exact_traction("hertz", 0, value, 1, &radii[1], &traction) == SLIPSTICK_OK &&
             near(stress[1].tz, traction, 1e-13),
         "sigma_tz is the traction at the surface");
-  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0, 0.3, 1, &most) == SLIPSTICK_OK &&
-            near(most.value, 0.620, 1e-3) && near(most.depth, 0.481, 1e-3),
-        "the largest shear under a sphere");
-  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0, 0.3, 3, &most) == SLIPSTICK_BAD_INPUT &&
-            says("measure = 3"),
-        "no such measure");
 }
 
 static void test_refusals(void) {

@@ -178,6 +178,15 @@ def _state(names: dict[str, Values], history: npt.ArrayLike | None) -> tuple[int
     return given, _library.doubles(value).ravel()
 
 
+def _stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, state: tuple[int, Any], friction: float, poisson: float,
+              profile: str) -> np.recarray:
+    given, values = state
+    radii, depths = (_library.doubles(array) for array in np.broadcast_arrays(radius, depth))
+    before = [given, values.size, _library.address(values), friction, poisson]
+    found = np.empty(radii.shape, _library.STRESS)
+    return _called("exact_stresses", profile, before, radii, [_library.address(depths)], found).view(np.recarray)
+
+
 def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | None = None, *,
              moment_deficit: float | None = None, stick_ratio: float | None = None, stick_complement: float | None = None,
              twist: float | None = None, history: Sequence[float] | None = None, friction: float = 0.0, poisson: float = 0.3,
@@ -195,21 +204,38 @@ def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | 
     >>> axis.tresca.round(2)
     array([0.2 , 0.62])
     """
-    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                            "stick_complement": stick_complement, "twist": twist}, history)
-    radii, depths = (_library.doubles(array) for array in np.broadcast_arrays(radius, depth))
-    before = [given, values.size, _library.address(values), friction, poisson]
-    found = np.empty(radii.shape, _library.STRESS)
-    return _called("exact_stresses", profile, before, radii, [_library.address(depths)], found).view(np.recarray)
+    state = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                    "stick_complement": stick_complement, "twist": twist}, history)
+    return _stresses(radius, depth, state, friction, poisson, profile)
 
 
 _MEASURES = ("von_mises", "tresca", "tension")
 
 
+def _climb(function: Any, starts: Any, step: float) -> tuple[float, Any]:
+    """The largest value of a function of points (r, z) that is near one of some starts, and where: each start goes to the best of
+    eight neighbours, or halves its step."""
+    finest = 1e-8  # its square is no part of the value
+    around = np.array([(dr, dz) for dr in (-1, 0, 1) for dz in (-1, 0, 1) if dr or dz], dtype=np.float64)
+    points, values = starts, function(starts)
+    steps = np.full(len(points), step)
+    while steps.max() > finest:
+        moved = np.maximum(0, points[:, None, :] + steps[:, None, None] * around)
+        found = function(moved.reshape(-1, 2)).reshape(len(points), -1)
+        best = found.argmax(axis=1)
+        rows = np.arange(len(points))
+        better = found[rows, best] > values
+        points = np.where(better[:, None], moved[rows, best], points)
+        values = np.where(better, found[rows, best], values)
+        steps = np.where(better, steps, steps / 2)
+    return values.max(), points[values.argmax()]
+
+
 def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float | None = None, stick_ratio: float | None = None,
                    stick_complement: float | None = None, twist: float | None = None, history: Sequence[float] | None = None,
-                   friction: float = 0.0, poisson: float = 0.3, measure: str = "von_mises", profile: str = "hertz") -> Any:
-    """The largest von_mises, tresca or tension in the body, over p0, as a record of value, radius and depth.
+                   friction: float = 0.0, poisson: float = 0.3, measure: str = "von_mises", profile: str = "hertz") -> np.record:
+    """The largest von_mises, tresca or tension in the body, over p0, as a record of value, radius and depth. The value is good to
+    1e-12, the place to 1e-6. InputError where a stress is infinite (a pressure that is infinite or ends in a step).
 
     >>> found = largest_stress(0.0, measure="tresca")
     >>> round(found.value / 2, 4), round(found.depth, 3)
@@ -217,19 +243,31 @@ def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float |
     """
     if measure not in _MEASURES:
         raise InputError(f"measure = {measure!r}; allowed: {', '.join(_MEASURES)}")
-    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                            "stick_complement": stick_complement, "twist": twist}, history)
-    found = np.recarray(1, _library.LARGEST)
-    _library.checked(_library.function("exact_largest_stress")(
-        _library.encoded(profile), given, values.size, _library.address(values), friction, poisson, _MEASURES.index(measure),
-        _library.address(found)))
-    return found[0]
+    if profile == "constant" or pressure(1.0, profile) != 0 or not np.isfinite(pressure(0.0, profile)):
+        raise InputError(f"profile = {profile!r}; allowed: pressures that are finite and end at zero, where no stress is infinite")
+    names: dict[str, Values] = {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                                "stick_complement": stick_complement, "twist": twist}
+    front = [] if history is not None else [_find("stick_ratio", profile, names)]
+
+    def function(points: Any) -> Any:
+        return _stresses(points[:, 0], points[:, 1], _state(names, history), friction, poisson, profile)[measure]
+    # Depths crowd at the surface, where torsion adds a maximum of its own.
+    spacing, count = 0.05, 4
+    radii = np.concatenate([spacing * np.arange(26), front])
+    depths = np.concatenate([[0.0, 0.02], spacing * np.arange(1, 13), [0.7, 0.8, 1.0]])
+    samples = np.stack(np.meshgrid(radii, depths), axis=-1).reshape(-1, 2)
+    starts: list[Any] = []
+    for point in samples[np.argsort(-function(samples), kind="stable")]:
+        if len(starts) < count and all(np.hypot(*(point - other)) > 3 * spacing for other in starts):
+            starts.append(point)
+    value, (radius, depth) = _climb(function, np.array(starts), spacing / 2)
+    return np.rec.fromrecords([(value, radius, depth)], names="value,radius,depth")[0]
 
 
 def first_yield(moment_ratio: npt.ArrayLike, friction: npt.ArrayLike, poisson: float = 0.3, measure: str = "von_mises",
                 profile: str = "hertz") -> np.recarray:
     """Where the body yields first, and at which pressure: records of pressure (p0 over the tensile yield stress), radius and
-    depth, for all pairs of the moments M/M_lim and frictions (they are broadcast).
+    depth, for moments M/M_lim and frictions, which are broadcast.
 
     Friction moves it to the surface:
 
@@ -237,11 +275,28 @@ def first_yield(moment_ratio: npt.ArrayLike, friction: npt.ArrayLike, poisson: f
     array([0.481, 0.   ])
     """
     moments, frictions = np.broadcast_arrays(_library.doubles(moment_ratio), _library.doubles(friction))
-    found = np.recarray(moments.shape, _library.LARGEST)
+    found = np.empty((3, *moments.shape))
     for index in np.ndindex(moments.shape):
-        found[index] = largest_stress(float(moments[index]), friction=float(frictions[index]), poisson=poisson, measure=measure,
-                                      profile=profile)
-    return np.rec.fromarrays([1 / found.value, found.radius, found.depth], names="pressure,radius,depth")
+        largest = largest_stress(float(moments[index]), friction=float(frictions[index]), poisson=poisson, measure=measure,
+                                 profile=profile)
+        found[(slice(None), *index)] = 1 / largest.value, largest.radius, largest.depth
+    return np.rec.fromarrays(list(found), names="pressure,radius,depth")
+
+
+def yield_load(yield_stress: float, effective_modulus: float, shape: npt.ArrayLike, moment_ratio: float = 0.0, friction: float = 0.0,
+               poisson: float = 0.3, measure: str = "von_mises", profile: str = "hertz") -> float:
+    """The normal load at which the body first yields, N, at this friction and share M/M_lim of the limit moment; yield stress (in
+    tension) and modulus in Pa, shape as in `contact_of`.
+
+    >>> round(yield_load(300e6, 115.4e9, 0.018), 3)  # a steel ball of 18 mm: p0 = 1.613 Y
+    14.241
+    """
+    if profile.startswith(("cone", "rounded_punch", "flat_punch")):
+        raise InputError(f"profile = {profile!r}; allowed: hertz, power:N, whose pressure is finite and keeps its form under every load")
+    pressure = yield_stress * float(first_yield(moment_ratio, friction, poisson, measure, profile).pressure)
+    # p0 goes like a power of the load.
+    one, two = (contact_of(load, effective_modulus, shape, profile).reference_pressure for load in (1.0, 2.0))
+    return float((pressure / one)**(np.log(2) / np.log(two / one)))
 
 
 def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
