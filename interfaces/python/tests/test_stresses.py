@@ -238,6 +238,27 @@ class ClassicTest(unittest.TestCase):
         self.assertEqual(found.depth[1, 2], 0)
         self.assertLess(found.pressure[1, 2], found.pressure[1, 0])
 
+    def test_the_table_of_first_yield(self):
+        """docs/theory.md: the critical frictions, and parts of the load without torsion."""
+        for moment_ratio, poisson, critical, radius in ((0.1, 0.3, 1.37400, 1), (0.5, 0.3, 0.59233, 0.859), (0.9, 0.3, 0.38113, 0.598),
+                                                        (0.99, 0.5, 0.29340, 0.380), (0.3, 0.0, 0.70727, 1)):
+            below, above = exact.first_yield(moment_ratio, [critical - 1e-5, critical + 1e-5], poisson)
+            self.assertGreater(below.depth, 0.3)
+            self.assertEqual(above.depth, 0)
+            self.assertAlmostEqual(above.radius, radius, delta=6e-4)
+        first = exact.first_yield([0.0, 0.9, 0.5, 0.99], [0.0, 0.4, 0.6, 1.0])
+        np.testing.assert_allclose((first.pressure / first.pressure[0])**3, [1, 0.8735, 0.9640, 0.0392], rtol=0, atol=5.1e-5)
+
+    def test_gross_slip_next_to_the_axis(self):
+        # sigma_r_theta = -(2 mu/pi r^2) integral_0^r s^2 E/sqrt(r^2 - s^2) ds, E -> 1; sigma_rr = sigma_tt = -(1 + 2 nu)/2.
+        for poisson, friction in ((0.3, 0.3), (0.0, 1.0)):
+            found = exact.stresses(1e-7, 0.0, moment_deficit=1e-60, friction=friction, poisson=poisson)
+            self.assertAlmostEqual(float(found.rt), -0.5, delta=1e-9)
+            self.assertAlmostEqual(float(found.von_mises), np.sqrt((0.5 - poisson)**2 + 15 / 4 * friction**2), delta=1e-9)
+            largest = exact.largest_stress(0.0, poisson=poisson).value
+            critical = np.sqrt(4 / 15 * (largest**2 - (0.5 - poisson)**2))
+            self.assertAlmostEqual(critical, {0.3: 0.30307, 0.0: 0.30215}[poisson], delta=5.1e-6)
+
     def test_the_load_at_first_yield(self):
         for shape, moment_ratio, profile in ((0.018, 0.9, "hertz"), (20.0, 0.0, "power:3")):
             load = exact.yield_load(300e6, 115e9, shape, moment_ratio, 0.4, profile=profile)
