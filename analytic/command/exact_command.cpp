@@ -88,6 +88,8 @@ std::vector<double> radii(const Options& options) {
 }
 
 ExactContact contact(const Options& options) {
+  if (options.friction && !options.normal_load && options.at.empty())
+    throw std::domain_error("--friction: allowed: with --normal-load or --at");
   if (!options.normal_load)
     return {.name = options.profile,
             .profile = naming("--profile", [&] { return find_profile(options.profile); }),

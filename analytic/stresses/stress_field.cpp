@@ -23,8 +23,8 @@ using Complex = std::complex<double>;
 constexpr double kSurface = 1e-34;
 /// Farther from the centre of the contact the terms of a closed form cancel, and its series in s converges.
 constexpr double kOutside = 4;
-/// Squares and cubes of larger distances, or of their inverses, leave the range of a double.
-constexpr double kLargestDistance = 1e60;
+/// Over a. From farther away the narrowest slip rings leave the range of a double.
+constexpr double kLargestDistance = 1e6;
 
 /// One of the discs, seen from a point: s, and r - s with its own digits; the weight of the disc in an
 /// integral.

@@ -179,7 +179,8 @@ class Exact(ProgramTest):
         self.assertEqual(back, loop)
         self.near(back[0]["sigma_tz"], -surface["sigma_tz"], 1e-13)
         for words, *says in (("--at 0.5", "--at"), ("--at 0.5,-1", "--at", "z/a = -1"), ("--at 0.5,1,2", "1,2"), ("--at 1,nan", "z/a = nan"),
-                             ("--at 1,0 --profile flat_punch", "infinite there"), ("--at 0,1 --certified 20", )):
+                             ("--at 1,0 --profile flat_punch", "infinite there"), ("--at 0,1 --certified 20", ),
+                             ("--friction 0.3", "--at")):
             self.refused(f"--moment-ratio 0.5 {words}", *says)
 
     def test_units_are_hertzs(self):
