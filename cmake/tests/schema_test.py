@@ -72,9 +72,11 @@ class Results(unittest.TestCase):
 
     def test_exact(self):
         units = ["--normal-load", 1000, "--effective-modulus", 1e11, "--friction", 0.1, "--shear-modulus", 4e10]
-        self.run_and_check("exact", "--moment-ratio", 0.9, "--radius", "0,0.5,1", *units, "--shape", 0.018)
-        self.run_and_check("exact", "--profile", "flat_punch", "--stick-ratio", 0.5, "--radius", 1, "--unload-to", 0.2)
-        self.run_and_check("exact", "--profile", "cone", "--history", "0.8,-0.8", "--points", 3, "--radius", "0,0.5")
+        self.run_and_check("exact", "--moment-ratio", 0.9, "--radius", "0,0.5,1", *units, "--shape", 0.018, "--at", "0.5,0.2")
+        self.run_and_check("exact", "--profile", "flat_punch", "--stick-ratio", 0.5, "--radius", 1,
+                           "--unload-to", 0.2, "--at", "0.5,0.2")
+        self.run_and_check("exact", "--profile", "cone", "--history", "0.8,-0.8", "--points", 3, "--radius", "0,0.5",
+                           "--at", "0.5,0.2")
         rows = "".join(f"{i / 20},{1 - (i / 20)**2}\n" for i in range(21))
         table = self.file("pressure.csv", "radius,pressure\n" + rows)
         self.run_and_check("exact", "--profile", f"file:{table}", "--twist", 0.1, "--radius", 0.5)
