@@ -158,8 +158,8 @@ int run(const Options& options, std::ostream& out, Json& result) {
   }
   const std::vector<double> at = radii(options);
   const double value = naming(from.option, [&] { return number(text); });
-  const StateOf state_of = [&](const Profile& profile) {
-    return naming(from.option, [&] { return from.state(value, profile); });
+  const StateOf state_of = [&](const Profile& any) {
+    return naming(from.option, [&] { return from.state(value, any); });
   };
   StateAnswer answer = answer_state(exact, state_of, at, options.unload_to);
   answer.stresses = stresses(options, answer.numbers.state, profile);
