@@ -81,6 +81,7 @@ hard: configure ## solve 782 hard scenes and equivalent ones, and audit all with
 	@status=0; mkdir -p $(BUILD)/hard; \
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
+	  [ $$status -gt 1 ] || echo "The audit with NumPy:" >&2; \
 	  [ $$status -gt 1 ] || $(PYTHON) convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
 
 SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))

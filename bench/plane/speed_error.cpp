@@ -158,7 +158,8 @@ Json measure_plane(const PlaneOptions& options) {
   plane["application_seconds"] = convergence::application_seconds(solver::read_scene(options.scene));
   std::size_t points = 0;
   for (const Json& load : design.at("loads")) points += load.at("runs").size();
-  convergence::Progress progress(points, static_cast<double>(points));
+  convergence::Progress progress;
+  progress.begin_runs(points, static_cast<double>(points), points);
   for (const Json& load : design.at("loads"))
     plane["scenes"].push_back(measure_load(options, load, progress));
   plane["provenance"] = convergence::provenance(1);

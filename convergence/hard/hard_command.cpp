@@ -53,17 +53,16 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
     methods.push_back(read_beside_method(word));
     runs.overrides.push_back(methods.back().override);  // named on the command line, it may run
   }
+  const HardOptions options{
+      .variants = !request.once, .finer_meshes = !request.once, .methods = methods, .fields = request.fields};
+  if (request.runs.list.empty()) *runs.progress = Progress(hard_stages(options));
   std::vector<PreparedRun> lacking;
   const ProcessPool pool = runs.pool(&lacking);
   HardResult found;
   {
     const Interrupts interrupts;
-    found = run_hard_cases(cases,
-                           {.variants = !request.once,
-                            .finer_meshes = !request.once,
-                            .methods = methods,
-                            .fields = request.fields},
-                           pool);
+    found = run_hard_cases(cases, options, pool);
+    pool.progress().end();
   }
   if (!request.runs.list.empty()) return runs.write_list(lacking, text, result);
   result = to_json(found);

@@ -14,6 +14,11 @@ namespace {
 
 using enum HardVerdict;
 
+/// Names of stages.
+constexpr const char* kScenes = "scenes";
+constexpr const char* kEquivalent = "equivalent scenes";
+constexpr const char* kFiner = "finer meshes";
+
 /// The grid of a record as overrides, with `finer` times as many cells along each axis.
 std::vector<std::string> grid_of(const SolveRecord& record, int finer = 1) {
   const auto& [n1, n2] = record.problem.cells;
@@ -173,6 +178,7 @@ void compare_methods(std::vector<HardRow>& rows, const std::vector<BesideMethod>
                      const ProcessPool& pool) {
   for (const BesideMethod& method : methods) {
     std::vector<RunSpec> runs;
+    pool.progress().begin(method.name);
     for (const HardRow& row : rows) runs.push_back(changed(row.hard.run, {method.override}));
     const std::vector<SolveRecord> records = pool.run_or_refuse(runs);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -286,10 +292,22 @@ std::array<std::size_t, 5> HardResult::method_counts(std::size_t method) const {
   return counts;
 }
 
+std::vector<Stage> hard_stages(const HardOptions& options) {
+  // Seconds of the project's scenes on two busy processors.
+  std::vector<Stage> stages{{kScenes, 85.0}};
+  if (options.variants) stages.push_back({kEquivalent, 420.0});
+  if (options.finer_meshes) stages.push_back({kFiner, 105.0});
+  for (const BesideMethod& method : options.methods) stages.push_back({method.name, 85.0});
+  return stages;
+}
+
 HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,
                           const ProcessPool& pool) {
+  pool.progress().begin(kScenes);
   HardResult result{.rows = solve_cases(cases, options.fields, pool), .methods = {}};
+  pool.progress().begin(kEquivalent);
   if (options.variants) judge_variants(result.rows, pool);
+  pool.progress().begin(kFiner);
   if (options.finer_meshes) judge_by_finer_meshes(result.rows, pool);
   compare_methods(result.rows, options.methods, pool);
   for (const BesideMethod& method : options.methods) result.methods.push_back(method.name);

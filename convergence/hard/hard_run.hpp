@@ -43,6 +43,9 @@ struct HardResult {
   std::size_t count(HardVerdict verdict) const { return counts()[static_cast<std::size_t>(verdict)]; }
 };
 
+/// The stages of a run, for a command that has no others.
+std::vector<Stage> hard_stages(const HardOptions& options);
+
 /// Solves and judges. A certified answer becomes wrong where an equivalent scene has another one, or a finer
 /// mesh one beyond its uncertainty.
 HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,

@@ -109,6 +109,14 @@ std::string summary_row(const Page& page) {
 int make_pages(PageRequest request, const ReportRequest& words, std::ostream& text, Json& result) {
   const std::vector<fs::path> folders = page_folders(words);
   for (const std::string& scene : words.scenes) solver::read_scene(scene, words.runs.overrides);
+  std::vector<Stage> stages;
+  for (const std::string& scene : words.scenes) {
+    const std::string name = words.scenes.size() == 1 ? "" : fs::path(scene).stem().string();
+    std::ranges::move(page_stages(request, name), std::back_inserter(stages));
+  }
+  constexpr double kFigures = 15.0;  // of a page, in the unit of page_stages()
+  stages.push_back({"figures", kFigures * static_cast<double>(words.scenes.size())});
+  *words.runs.progress = Progress(stages);
   std::vector<Page> pages;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const fs::path data = folders[i] / "data";
@@ -130,6 +138,8 @@ int make_pages(PageRequest request, const ReportRequest& words, std::ostream& te
     list.push_back(to_json(page));
   }
   result = Json{{"pages", std::move(list)}};
+  words.runs.progress->begin("figures");
+  words.runs.progress->end();
   draw(folders, words);
   write_option_file("--junit", words.junit, junit_text("slipstick report", cases));
   append_option_file(

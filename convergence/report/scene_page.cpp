@@ -125,6 +125,17 @@ HardResult hard_variants(const PageScene& at, const Json& answer, const std::vec
 
 }  // namespace
 
+std::vector<Stage> page_stages(const PageRequest& request, const std::string& scene) {
+  // Seconds of pages of the ellipse and of the paper's scene on two processors.
+  std::vector<Stage> stages{{"answer", 0.5, scene},
+                            {"study", 3.0, scene},
+                            {"costs", 5.0, scene},
+                            {"hard variants", 2.0, scene},
+                            {"rounding", 0.5, scene}};
+  if (request.validation) std::ranges::move(validation_stages(*request.validation), std::back_inserter(stages));
+  return stages;
+}
+
 Page scene_page(const PageRequest& request, const fs::path& folder, const ProcessPool& pool) {
   const PageScene at = page_scene(request.base, request.size);
   if (!at.own && !request.uncertain.empty())
@@ -133,6 +144,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
       uncertain_inputs({at.base.scene, at.base.overrides}, request.uncertain);
   solver::make_folder(folder);
   const fs::path fields = folder / "answer.h5";
+  pool.progress().begin("answer");
   const std::vector<Json> results = solve_answer(at, fields, pool);
   Page page{.provenance = provenance(std::max(1, at.scene.solver.threads)),
             .scene = described(at),
@@ -140,6 +152,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   if (!at.own && has_tractions(page.answer)) page.check = check_program(at, page.answer, fields);
   std::vector<Finding> findings{judge_answer(page)};
   Json counts = Json::object();
+  pool.progress().begin("study");
   const std::vector<StudyResult> studies = scene_studies(at, pool);
   for (const StudyResult& study : studies) page.studies.push_back(to_json(study));
   page.numbers = number_rows(at.scene, results, studies.front());
@@ -149,14 +162,19 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
     findings.push_back(judge_accuracy(page.numbers, reference.number));
   if (!uncertain.empty()) page.uncertainty = uncertainty(at, page.answer, uncertain);
   findings.push_back(judge_order(studies.front(), reference.number, words_of(reference.number)));
+  pool.progress().begin("costs");
   if (!at.meshes.given) page.costs = costs_of(at, {request.beside, page.numbers, reference}, pool);
   if (at.own || has_tractions(page.answer)) {
+    pool.progress().begin("hard variants");
     const HardResult hard = hard_variants(at, page.answer, request.beside, pool);
     findings.push_back(at.own ? judge_hard(hard, "Hard variants") : judge_hard_beside(hard));
     counts.emplace("hard", counts_json(hard));
     page.hard = to_json(hard);
   }
-  if (at.own) page.digits = to_json(rounding_digits(at.on_coarsest(), {.samples = kRoundingSamples}, pool));
+  if (at.own) {
+    pool.progress().begin("rounding");
+    page.digits = to_json(rounding_digits(at.on_coarsest(), {.samples = kRoundingSamples}, pool));
+  }
   if (request.validation) {
     const PaperValidation paper = validate(*request.validation, folder, pool);
     std::ranges::move(judge_validation(paper), std::back_inserter(findings));

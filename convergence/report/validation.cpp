@@ -358,12 +358,21 @@ Finding judge_known_fields(const std::vector<KnownField>& peers) {
 
 }  // namespace
 
+std::vector<Stage> validation_stages(const Validation& request) {
+  // Seconds on two processors.
+  if (request.effort == Effort::quick) {
+    return {{"validation", 5.0}, {"hard scenes", 110.0 / kQuickHardStep}, {"published numbers", 10.0}};
+  }
+  return {{"validation", 15.0}, {"hard scenes", 110.0}, {"published numbers", 60.0}, {"gates", 25.0}};
+}
+
 PaperValidation validate(const Validation& request, const fs::path& folder, const ProcessPool& pool) {
   const auto& [inputs, effort] = request;
   const ValidationSize size = size_for(effort);
   const fs::path scenes = inputs / "scenes";
   const fs::path scene_file = scenes / "paper.toml";
   const Oracle exact = *find_oracle(solver::read_scene(scene_file)).oracle;
+  pool.progress().begin("validation");
   const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
   Json profiles = Json::array();
   for (std::size_t i = 0; i < std::size(kProfileRatios); ++i)
@@ -385,10 +394,15 @@ PaperValidation validate(const Validation& request, const fs::path& folder, cons
            {"cycle", cycle(results.at("cycle").front())},
            {"beyond", beyond_rows(results)}});
   const bool all = effort != Effort::quick;
+  pool.progress().begin("hard scenes");
   paper.hard = hard_results(inputs / "hard", all ? 1 : kQuickHardStep, pool);
   paper.peers = judge_peers(inputs);
+  pool.progress().begin("published numbers");
   paper.literature = literature(inputs / "literature", all, pool);
-  if (all) paper.gates = run_gates(read_gates(inputs / "gates" / "quick.toml"), pool);
+  if (all) {
+    pool.progress().begin("gates");
+    paper.gates = run_gates(read_gates(inputs / "gates" / "quick.toml"), pool);
+  }
   return paper;
 }
 

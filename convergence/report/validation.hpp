@@ -36,6 +36,9 @@ struct PaperValidation {
   std::optional<std::vector<Judgement>> gates = {};  ///< none on a quick page
 };
 
+/// The stages of validate().
+std::vector<Stage> validation_stages(const Validation& request);
+
 /// Writes the fields that the page draws into `folder`. Throws std::runtime_error where a run has no result,
 /// and as the pool does.
 PaperValidation validate(const Validation& request, const std::filesystem::path& folder,

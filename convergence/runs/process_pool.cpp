@@ -15,7 +15,6 @@
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/worker.hpp"
@@ -107,17 +106,14 @@ class TaskQueue {
   /// The records by the names of their runs. Each is read at the end of its run, since another program may
   /// share the folder.
   std::map<std::string, SolveRecord> work() {
-    Progress progress(tasks_.size(),
-                      std::accumulate(tasks_.begin(), tasks_.end(), 0.0,
-                                      [](double sum, const Task& task) { return sum + task.bytes; }));
     std::map<std::string, SolveRecord> records;
     while (next_ < tasks_.size() || busy_ > 0) {
       while (may_start()) start_next();
-      for (const auto& [task, failure] : take_finished(progress)) {
-        progress.finished(task->label, task->bytes);
+      for (const auto& [task, failure] : take_finished()) {
+        options_.progress->finished(task->label, task->bytes);
         records[task->run->name] = record_of(*task->run, failure);
       }
-      if (is_interrupted()) stop(progress, "interrupted");
+      if (is_interrupted()) stop("interrupted");
     }
     end_idle();
     return records;
@@ -125,7 +121,6 @@ class TaskQueue {
 
   /// The same in this process, one run after another, on systems where it can start no other.
   std::map<std::string, SolveRecord> work_here() {
-    Progress progress(tasks_.size(), static_cast<double>(tasks_.size()));
     const auto shared = std::make_shared<solver::SolveCache>();
     std::map<std::string, SolveRecord> records;
     for (const Task& task : tasks_) {
@@ -133,13 +128,13 @@ class TaskQueue {
       try {
         keep_result_of(*task.run, options_.memory_limit, shared, cache_);
       } catch (const solver::InputError& error) {
-        stop(progress, error.what());
+        stop(error.what());
       } catch (const std::exception& error) {
         failure = error.what();
       }
-      progress.finished(task.label, 1.0);
+      options_.progress->finished(task.label, task.bytes);
       records[task.run->name] = record_of(*task.run, failure);
-      if (is_interrupted()) stop(progress, "interrupted");
+      if (is_interrupted()) stop("interrupted");
     }
     return records;
   }
@@ -147,10 +142,11 @@ class TaskQueue {
  private:
   bool is_interrupted() const { return options_.interrupted != nullptr && options_.interrupted(); }
 
-  [[noreturn]] void stop(const Progress& progress, const std::string& why) const {
+  [[noreturn]] void stop(const std::string& why) const {
+    options_.progress->end();
     throw std::runtime_error(
         fmt::format("{}: {} points are done and kept in {}; the same command goes on from there", why,
-                    progress.text(), options_.folder.string()));
+                    options_.progress->text(), options_.folder.string()));
   }
 
   SolveRecord record_of(const PreparedRun& run, std::string failure) const {
@@ -204,7 +200,7 @@ class TaskQueue {
   }
 
   /// Waits until a run is finished, or for an interrupt.
-  std::vector<Finished> take_finished(const Progress& progress) {
+  std::vector<Finished> take_finished() {
     std::vector<pollfd> outputs;
     for (const PooledWorker& pooled : workers_) outputs.push_back({pooled.worker.output(), POLLIN, 0});
     std::vector<Finished> finished;
@@ -221,7 +217,7 @@ class TaskQueue {
         const ProgramEnd end = pooled->worker.wait();
         failure = failure_of(end);
         workers_.erase(pooled);
-        if (end.code == kNotKept) stop(progress, failure);
+        if (end.code == kNotKept) stop(failure);
       }
       if (task == nullptr) continue;  // it ended while it was idle: nothing is lost
       bytes_ -= task->bytes;
@@ -288,6 +284,9 @@ std::vector<SolveRecord> ProcessPool::run_prepared(const std::vector<PreparedRun
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
+  const double weight = std::accumulate(tasks.begin(), tasks.end(), 0.0,
+                                        [](double sum, const Task& task) { return sum + task.bytes; });
+  options_.progress->begin_runs(tasks.size(), weight, known.size());
   TaskQueue queue(std::move(tasks), cache, options_);
   for (auto& [name, record] : starts_programs() ? queue.work() : queue.work_here()) {
     known[name] = std::move(record);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/solve_record.hpp"
+#include "convergence/runs/progress.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/system/run_program.hpp"
 
@@ -23,6 +25,7 @@ struct ProcessPoolOptions {
   /// Null: runs without a result are solved. Otherwise they are added here, none is solved, and their records
   /// are refused.
   std::vector<PreparedRun>* lacking = nullptr;
+  std::shared_ptr<Progress> progress = std::make_shared<Progress>();  ///< is printed
 };
 
 /// Solves many scenes side by side, each in a slipstick process, as many at a time as processors and memory
@@ -49,6 +52,7 @@ class ProcessPool {
 
   /// Number of runs that were listed instead of being solved.
   std::size_t lacking() const { return options_.lacking == nullptr ? 0 : options_.lacking->size(); }
+  Progress& progress() const { return *options_.progress; }
   std::optional<double> memory_limit() const { return options_.memory_limit; }
   const std::filesystem::path& folder() const { return options_.folder; }
 

@@ -76,7 +76,8 @@ ProcessPool RunOptions::pool(std::vector<PreparedRun>* lacking) const {
                       .program = own_program(),
                       .interrupted = Interrupts::seen,
                       .programs = {allow_programs, overrides, own_program()},
-                      .lacking = list.empty() ? nullptr : lacking});
+                      .lacking = list.empty() ? nullptr : lacking,
+                      .progress = progress});
 }
 
 int RunOptions::write_list(const std::vector<PreparedRun>& lacking, std::ostream& text, Json& result) const {

@@ -34,6 +34,7 @@ struct RunOptions {
   std::string list = {};                           ///< gets the runs without a result; empty: they are solved
   bool allow_programs = false;                     ///< --allow-programs
   std::vector<std::string> overrides = {};         ///< by the command line, which may name a program
+  std::shared_ptr<Progress> progress = std::make_shared<Progress>();  ///< of all pools
 
   /// --output, --jobs, --memory-limit.
   void add_to(CLI::App& command);
