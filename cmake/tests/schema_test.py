@@ -198,6 +198,10 @@ class Results(unittest.TestCase):
         files = [self.file("refused.toml", refused), self.file("unreadable.toml", "[[gate]]\nid =")]
         self.run_and_check("gate", *files, "--output", self.folder / "gates", code=2)
         self.run_and_check("gate", *files, "--list", code=2)
+        if PACKAGE.exists():
+            history = self.folder / "history.jsonl"
+            self.run_program("gate", *files, "--output", self.folder / "gates", "--history", history, code=2)
+            self.follows(parse(history.read_text()), "history")
 
     def test_programs(self):
         kept = self.folder / "exchange.json"

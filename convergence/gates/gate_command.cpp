@@ -4,21 +4,36 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <map>
+#include <utility>
 #include <variant>
 
 #include "convergence/gates/gate_reader.hpp"
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/programs/output_options.hpp"
+#include "convergence/programs/package_module.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
+
+/// Options that name files which the module `ci` of the Python package makes of a run, and their help.
+constexpr std::array kExports{
+    std::pair{"--history",
+              "add this run to a file, a JSON object a line: commit, date, values with bounds, times"},
+    std::pair{"--figure", "draw the values of --history with their bounds over the runs (.svg)"},
+    std::pair{"--badge", "write the counts for a badge of shields.io's endpoint"},
+    std::pair{"--bencher", "write values and times in Bencher's format (BMF JSON)"},
+    std::pair{"--benchmark-action",
+              "write them for github-action-benchmark (customSmallerIsBetter), numbers over their bounds"}};
 
 struct GateRequest {
   std::vector<std::string> files;
@@ -26,6 +41,8 @@ struct GateRequest {
   std::string junit;
   std::string summary;
   std::string results;
+  std::map<std::string, std::string> exports;  ///< files by the options of kExports
+  std::string times;
   bool list = false;
   RunOptions runs{.output = "build/gates"};
 };
@@ -75,10 +92,34 @@ int list_gates(const GateRequest& request, std::ostream& text, Json& result) {
   return code;
 }
 
+void require_exports(const GateRequest& request) {
+  for (const auto& [option, file] : request.exports) require_output(option, file);
+  const auto figure = request.exports.find("--figure");
+  if (figure != request.exports.end() && !figure->second.empty() && !figure->second.ends_with(".svg"))
+    throw solver::InputError("--figure " + figure->second, "allowed ending: .svg");
+  if (!request.times.empty())
+    solver::require_input_file(request.times, solver::kLargestJson, "a file of benchmarks (JSON)");
+}
+
+void write_exports(const GateRequest& request, const Json& result) {
+  Json files = Json::object();
+  for (const auto& [option, file] : request.exports) {
+    if (!file.empty()) files[option] = file;
+  }
+  if (files.empty()) return;
+  const ModuleAnswer answer =
+      run_package_module("ci", {{"files", files}, {"times", request.times}, {"result", result}});
+  for (const auto& [option, text] : answer.rest.at("texts").items()) {
+    const auto write = option == "--history" ? append_option_file : write_option_file;
+    write(option, files.at(option), text);
+  }
+}
+
 int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
   if (request.list) return list_gates(request, text, result);
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
+  require_exports(request);
   const GateFiles files = read_gate_files(request.files, request.results);
   require_inputs_kept(command, files_behind(files.gates));
   std::vector<Judgement> judgements = files.unreadable;
@@ -100,6 +141,7 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
   text << gates_text(judgements);
   write_option_file("--junit", request.junit, gates_junit(judgements));
   append_option_file("--summary", request.summary, gates_markdown(judgements));
+  write_exports(request, result);
   if (judgements.empty()) {
     throw solver::InputError(request.files.front(), "no gate ran; allowed: tables headed [[gate]]");
   }
@@ -123,11 +165,21 @@ RunCommand add_gate_command(CLI::App& app) {
       ->add_option("--summary", request->summary,
                    "add a Markdown table, the worst first, below 64 kB, to this file")
       ->excludes(list);
+  std::vector<std::string> of_judgement{"--junit", "--summary", "--list"};
+  for (const auto& [option, help] : kExports) {
+    command->add_option(option, request->exports[option], help)->type_name("FILE")->excludes(list);
+    of_judgement.emplace_back(option);
+  }
+  command->get_option("--figure")->needs(command->get_option("--history"));
+  command
+      ->add_option("--times", request->times,
+                   "times for these files: of Google Benchmark, pytest-benchmark or hyperfine (JSON)")
+      ->type_name("FILE");
   command->add_option("--results", request->results,
                       "folder of the result files that gates name (default: the gate file's folder)");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
-  request->runs.add_list_to(*command, {"--junit", "--summary", "--list"});
+  request->runs.add_list_to(*command, of_judgement);
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "

@@ -23,8 +23,8 @@ _slipstick() {
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --program" | "study --list-runs" | "study --json") return ;;
       "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
-      "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --list-runs" | "gate --json") return ;;
-      "gate "*) [[ $current != -* ]] || words="--help --only --list --junit --summary --results --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
+      "gate --only" | "gate --junit" | "gate --summary" | "gate --history" | "gate --figure" | "gate --badge" | "gate --bencher" | "gate --benchmark-action" | "gate --times" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --list-runs" | "gate --json") return ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --list --junit --summary --history --figure --badge --bencher --benchmark-action --times --results --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
       "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "hard --fields" | "hard --beside" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --program" | "hard --list-runs" | "hard --json") return ;;
       "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --program --allow-programs --list-runs --json --quiet" ;;
