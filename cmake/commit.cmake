@@ -2,6 +2,9 @@
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C "${SOURCE_DIR}" describe --always --dirty
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT commit)  # sources without git, of which the caller knows the commit
+  set(commit "$ENV{SLIPSTICK_COMMIT}")
+endif()
 if(NOT commit)
   set(commit "unknown")
 endif()

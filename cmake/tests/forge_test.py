@@ -37,7 +37,7 @@ def complaints(root, file):
             for word in target.split():
                 if not re.search(rf"^{word}:", (root / "Makefile").read_text(), re.MULTILINE):
                     yield f"{name}: there is no make {word}"
-        for word in re.findall(r"inputs\.(\w+)", str(step)):
+        for word in re.findall(r"inputs\.([\w-]+)", str(step)):
             if word not in inputs:
                 yield f"{name}: there is no input {word}"
     parts = re.search(r"part: \[(.*?)\]", file.read_text(), re.DOTALL)
