@@ -1,7 +1,6 @@
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -17,7 +16,6 @@ namespace slipstick::bench {
 namespace {
 
 using namespace convergence;
-using solver::InputError;
 
 struct CompareRequest {
   std::string base;
@@ -30,95 +28,31 @@ struct CompareRequest {
   std::string junit;
 };
 
-/// "10%" or "0.10".
-double read_effect(const std::string& text) {
-  double effect = 0.0;
-  std::size_t read = 0;
-  try {
-    effect = std::stod(text, &read);
-  } catch (const std::logic_error&) {
-    read = 0;
-  }
-  const bool percent = read > 0 && text.substr(read) == "%";
-  if (percent) effect /= 100.0;
-  if (read == 0 || (read != text.size() && !percent) || !(effect > 0.0 && effect <= 1.0)) {
-    throw InputError("command line", "--effect", text, "a part of the time, as 10% or 0.10, up to 100%");
-  }
-  return effect;
-}
-
-Json rules_of(const CompareRequest& request) {
-  if (!(request.level > 0.0 && request.level <= 0.5)) {
-    throw InputError("command line", "--level", fmt::format("{}", request.level),
-                     "a chance above 0, at most 0.5");
-  }
-  return {{"effect", read_effect(request.effect)},
-          {"level", request.level},
-          {"same_machine", request.same_machine},
-          {"debug_library", request.debug_library}};
-}
-
 std::string read_timings(const std::string& file) {
   constexpr const char* kAllowed =
       "what Google Benchmark (--benchmark_format=json), pytest-benchmark (--benchmark-json) or hyperfine "
       "(--export-json) writes";
   std::string text = solver::read_input_file(file, solver::kLargestJson, kAllowed);
-  if (as_utf8(text) != text) {
-    throw InputError(file, fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
-  }
-  return text;
-}
-
-/// The worst first.
-std::string comparison_markdown(const Json& report) {
-  const auto word = [&](const char* key) { return report.at(key).get<std::string>(); };
-  std::string text =
-      fmt::format("### {}\n\n{}; {}.\n\n", word("title"), markdown_text(word("heading")), word("rules"));
-  for (const Json& each : report.at("cases")) {
-    if (each.at("type") == "obstacle")
-      text += fmt::format("- could not judge: {}\n", markdown_text(each.at("message").get<std::string>()));
-  }
-  std::vector<std::string> rows;
-  for (const Json& cells : report.at("rows")) {
-    auto row = cells.get<std::vector<std::string>>();
-    for (std::string* const users : {&row.front(), &row.back()}) *users = markdown_text(*users);
-    rows.push_back(fmt::format("| {} |", fmt::join(row, " | ")));
-  }
-  const auto header = report.at("header").get<std::vector<std::string>>();
-  return markdown_with_table(text + "\n", fmt::format("| {} | |", fmt::join(header, " | ")), rows,
-                             "benchmarks");
-}
-
-/// One case for each benchmark and each obstacle.
-std::string comparison_junit(const Json& report) {
-  const std::map<std::string, CaseVerdict> verdicts{
-      {"passed", CaseVerdict::passed}, {"failure", CaseVerdict::failure}, {"error", CaseVerdict::error}};
-  std::vector<JunitCase> cases;
-  for (const Json& each : report.at("cases")) {
-    cases.push_back({.suite = report.at("heading"),
-                     .classname = "compare",
-                     .name = each.at("name"),
-                     .seconds = each.value("seconds", 0.0),
-                     .verdict = verdicts.at(each.at("verdict")),
-                     .type = each.at("type"),
-                     .message = each.value("message", ""),
-                     .details = each.value("details", ""),
-                     .shown = each.value("shown", "")});
-  }
-  return junit_text("slipstick compare", cases);
+  if (as_utf8(text) == text) return text;
+  throw solver::InputError(file,
+                           fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
 }
 
 int run_compare(const CompareRequest& request, std::ostream& text, Json& result) {
-  Json files{{"rules", rules_of(request)}, {"base", request.base}, {"new", request.now}};
   require_output("--summary", request.summary);
   require_output("--junit", request.junit);
-  files["base_text"] = read_timings(request.base);
-  files["new_text"] = read_timings(request.now);
-  const ModuleAnswer answer = run_package_module("speed.compare", files);
+  const ModuleAnswer answer = run_package_module("speed.compare", {{"base", request.base},
+                                                                   {"new", request.now},
+                                                                   {"base_text", read_timings(request.base)},
+                                                                   {"new_text", read_timings(request.now)},
+                                                                   {"effect", request.effect},
+                                                                   {"level", request.level},
+                                                                   {"same_machine", request.same_machine},
+                                                                   {"debug_library", request.debug_library}});
   result = answer.result;
   text << answer.text;
-  append_option_file("--summary", request.summary, comparison_markdown(answer.rest));
-  write_option_file("--junit", request.junit, comparison_junit(answer.rest));
+  append_option_file("--summary", request.summary, answer.rest.at("markdown"));
+  write_option_file("--junit", request.junit, answer.rest.at("junit"));
   return answer.exit_code;
 }
 

@@ -84,12 +84,8 @@ int judge_file(const CLI::App& command, const CheckRequest& request, std::ostrea
 std::string check_markdown(const CheckRequest& request, const JunitCase& judged) {
   std::string text = fmt::format("### {}: {} for {}\n\n{}\n\n", judged.type, markdown_text(request.field),
                                  markdown_text(request.scene), markdown_text(judged.message));
-  bool begins = true;
-  for (const char c : as_utf8(plain_text(judged.shown + judged.details))) {
-    if (begins) text += "    ";
-    text += c;
-    begins = c == '\n';
-  }
+  std::istringstream lines(as_utf8(plain_text(judged.shown + judged.details)));
+  for (std::string line; std::getline(lines, line);) text += "    " + line + "\n";
   return text + "\n";
 }
 

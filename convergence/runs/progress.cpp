@@ -61,18 +61,14 @@ void Progress::finished(const std::string& label, double weight, Clock::time_poi
   print(fmt::format("[{}/{}] {}", runs_done_, runs_, plain_text(label)), runs_done_ == runs_, now);
 }
 
-double Progress::share_of_later_stages() const {
-  double share = 0.0;
-  for (std::size_t i = next_; i < stages_.size(); ++i) share += stages_[i].share;
-  return share;
-}
-
 double Progress::seconds_left(Clock::time_point now) const {
   const double runs_left = spent_ > 0.0 ? seconds_between(start_, now) / spent_ * std::max(left_, 0.0)
-                           : runs_ > 0  ? kNaN
+                           : runs_ > 0  ? std::nan("")
                                         : 0.0;
   if (next_ == 0) return runs_left;
   const double in_stage = seconds_between(stage_start_, now);
+  double later = 0.0;
+  for (std::size_t i = next_; i < stages_.size(); ++i) later += stages_[i].share;
   const double share = stages_[next_ - 1].share;
   if (done_share_ > 0.0) {
     const double speed = done_seconds_ / done_share_;
@@ -80,10 +76,10 @@ double Progress::seconds_left(Clock::time_point now) const {
     // The first runs of a group say little about the others.
     const double known = spent_ > 0.0 ? spent_ / (spent_ + std::max(left_, 0.0)) : 0.0;
     const double in_this = known > 0.0 ? known * runs_left + (1.0 - known) * by_share : by_share;
-    return in_this + speed * share_of_later_stages();
+    return in_this + speed * later;
   }
-  if (runs_ == 0) return kNaN;
-  return runs_left + (in_stage + runs_left) / share * share_of_later_stages();
+  if (runs_ == 0) return std::nan("");
+  return runs_left + (in_stage + runs_left) / share * later;
 }
 
 void Progress::print(std::string text, bool last, Clock::time_point now) {

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -42,10 +41,7 @@ class Progress {
   double seconds_left(Clock::time_point now = Clock::now()) const;
 
  private:
-  double share_of_later_stages() const;
   void print(std::string text, bool last, Clock::time_point now);
-
-  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
   std::vector<Stage> stages_;
   std::size_t next_ = 0;  ///< stage after the current one; 0: none has begun

@@ -1,4 +1,4 @@
-"""slipstick.ci: lines of a history, badges, files for trackers, and the figure."""
+"""slipstick.ci: lines of a history, badges, files for trackers, and the figure; slipstick.verdict_files."""
 import json
 import os
 import subprocess
@@ -8,7 +8,7 @@ import xml.etree.ElementTree
 from pathlib import Path
 from unittest import mock
 
-from slipstick import ci
+from slipstick import ci, verdict_files
 from slipstick.errors import InputError
 
 
@@ -100,3 +100,23 @@ class CiTest(unittest.TestCase):
         Path("history").write_text('{"gates": [], "times": []}\nhello\n')
         with self.assertRaisesRegex(InputError, "history:2: is no run"):
             self.answer(result(), "--history")
+
+
+class VerdictFilesTest(unittest.TestCase):
+    def test_what_a_stranger_wrote_stays_text(self):
+        """No image, link, mention, sequence of a terminal or turned direction, and XML that can be read."""
+        wild = ("![x](http://a.b/c) <javascript:z> @user #12 www.a.b &#64;user `code` **b** \x1b[31m \u009b31m \u202etxet \u2066 \u2028 "
+                "\u061c \ud800 \uffff ]]> \"q\" a | b\nc")
+        markdown = verdict_files.markdown_table("", ["a"], [[verdict_files.markdown_text(wild)]], "rows")
+        for markup in ("[x](", "http://", "@user", "#12", "www.", "&#64;", " <", " `code", " **"):
+            self.assertNotIn(markup, markdown)
+        self.assertEqual(markdown.count("\n"), 3)
+        case = {"name": wild, "verdict": "failure", "type": wild, "message": wild, "details": wild, "shown": wild}
+        text = verdict_files.junit("slipstick compare", wild, [case])
+        for report in (markdown, text):
+            for steers in "\x1b\u009b\u202e\u2066\u2028\u061c":
+                self.assertNotIn(steers, report)
+            self.assertIn("u202etxet", report)
+        read, = xml.etree.ElementTree.fromstring(text.encode()).iter("testcase")
+        self.assertIn("a | b\nc", read.get("name"))
+        self.assertEqual(read.find("failure").text, read.get("name"))

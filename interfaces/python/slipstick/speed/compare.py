@@ -6,6 +6,8 @@ import statistics
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from .. import verdict_files
+from ..errors import InputError
 from . import rank_tests, timings
 from .obstacles import Rules, find_obstacles
 from .timings import Benchmark, Timings, are_paired
@@ -268,12 +270,30 @@ def report(base: str, now: str, rules: Rules, comparison: Comparison, second: Co
     return {"exit_code": comparison.exit_code(), "result": result, "heading": heading, "title": title, "rules": counting,
             "text": "".join((f"{heading}\n", _table(worst_first), *(f"could not judge: {obstacle}\n" for obstacle in
                                                                     comparison.obstacles), f"{title} ({counting})\n")),
-            "cases": [*obstacles, *(_case(benchmark) for benchmark in comparison.benchmarks)],
-            "header": HEADER, "rows": [[*_row(benchmark), benchmark.remark] for benchmark in worst_first]}
+            "junit": verdict_files.junit("slipstick compare", heading, [*obstacles, *map(_case, comparison.benchmarks)]),
+            "markdown": verdict_files.markdown_table(
+                f"### {title}\n\n{verdict_files.markdown_text(heading)}; {counting}.\n\n"
+                + "".join(f"- could not judge: {verdict_files.markdown_text(each)}\n" for each in comparison.obstacles) + "\n",
+                [*HEADER, ""], [[verdict_files.markdown_text(benchmark.name), *_row(benchmark)[1:],
+                                 verdict_files.markdown_text(benchmark.remark)] for benchmark in worst_first], "benchmarks")}
+
+
+def _effect(text: str) -> float:
+    """"10%" or "0.10"."""
+    try:
+        effect = float(text[:-1]) / 100.0 if text.endswith("%") else float(text)
+    except ValueError:
+        effect = math.nan
+    if not 0.0 < effect <= 1.0:
+        raise InputError(f"command line: --effect = {text}: allowed: a part of the time, as 10% or 0.10, up to 100%")
+    return effect
 
 
 def answer(request: dict[str, Any]) -> dict[str, Any]:
     """Compares the texts of two files."""
-    rules = Rules(**request["rules"])
+    level = math.nan if request["level"] is None else request["level"]  # JSON has no NaN
+    if not 0.0 < level <= 0.5:
+        raise InputError(f"command line: --level = {level:g}: allowed: a chance above 0, at most 0.5")
+    rules = Rules(_effect(request["effect"]), level, request["same_machine"], request["debug_library"])
     base, now = (timings.parse(request[f"{side}_text"], request[side]) for side in ("base", "new"))
     return report(request["base"], request["new"], rules, compare(base, now, rules))
