@@ -1,5 +1,5 @@
-"""skipped.py BUILD: the tests that the last run of ctest skipped, and those that were not built, each with the reason and the package
-to install."""
+"""skipped.py BUILD: lists the tests that the last run of ctest skipped, and the optional tests that were not built, each with the
+reason and the package to install."""
 
 import re
 import sys

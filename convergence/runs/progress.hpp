@@ -27,8 +27,8 @@ class Progress {
   /// The next stage of this name begins; a name that no later stage has changes nothing, so that a part of a
   /// command may be a stage of one command and belong to a larger stage of another.
   void begin(const std::string& stage, Clock::time_point now = Clock::now());
-  /// A group of runs begins. weight: their work, in any unit; asked: runs with those that are finished
-  /// already.
+  /// A group of runs begins. weight: their work, in any unit; asked: their number together
+  /// with the runs whose results were kept.
   void begin_runs(std::size_t runs, double weight, std::size_t asked, Clock::time_point now = Clock::now());
   /// A run is done; weight: its work, in the same unit.
   void finished(const std::string& label, double weight, Clock::time_point now = Clock::now());
@@ -37,7 +37,7 @@ class Progress {
 
   /// "3 of 12", of the group of runs.
   std::string text() const;
-  /// Of all stages; NaN where nothing is known yet.
+  /// Seconds that all stages still need; NaN where nothing is known yet.
   double seconds_left(Clock::time_point now = Clock::now()) const;
 
  private:
