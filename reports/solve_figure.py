@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what `slipstick solve` computed: slip and stick, tractions, pressure, in one figure."""
+"""Draws what `slipstick solve` computed: slip and stick, tractions, pressure, and of a history its loop, in one figure."""
 
 import argparse
 import sys
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure  # noqa: E402
 import style  # noqa: E402
 from cells import Cells  # noqa: E402
 from results import InputError, Unavailable, load, number, reason, text, value  # noqa: E402
-from wording import ANGLES, LENGTHS, STRESSES, law, percent, plain, quantity, sci, unit_for  # noqa: E402
+from wording import ANGLES, FORCES, LENGTHS, MOMENTS, STRESSES, law, percent, plain, quantity, sci, unit_for  # noqa: E402
 
 WIDE = 1.7  # width over height of the contact, from which on its panels stand one above the other
 SIDES = (0.35, 6.0)  # least and largest width over height of a panel; white space makes up for the rest
@@ -26,6 +26,9 @@ LONGEST_ARROW = 0.055  # of the longer side of the contact's bounding rectangle
 MIN_ARROW = 0.05  # shorter vectors, of the longest, get no arrow
 MAX_SEGMENTS = 2000  # an outline of more becomes a fine image, so that files stay small
 ROUNDING = 1e-9  # loads and motions below this part of their scale are rounding errors
+MOST_MARKED = 60  # steps of a loop that get dots
+LOOP_HEIGHT = 3.0  # inches, of a loop below the other panels
+STEP = "{step}"  # in a file's name stands for the number of a step, from 1
 HEAD = 0.34  # inches for the message; a line of details takes DETAIL
 DETAIL = 0.19
 
@@ -37,10 +40,15 @@ def round_down(number):
 
 
 class Solved:
-    """A result, its contact cells, and the part of the plane in the panels."""
+    """A result, its contact cells, the part of the plane in the panels, and its loop. Of a history `step` is shown (from 1;
+    None: the last one)."""
 
-    def __init__(self, result, cells):
-        self.result, self.cells = result, cells
+    def __init__(self, result, cells, step=None):
+        steps = result.get("steps") or []
+        self.step = step or len(steps)
+        self.loop = Loop(steps) if len(steps) > 1 else None
+        self.result = {**result, **steps[self.step - 1], "name": result["name"]} if steps else result
+        self.cells = cells
         columns = cells.columns
         self.sticks = columns["stick"] != 0
         self.pressure = columns["pressure"]
@@ -69,6 +77,39 @@ class Solved:
         chosen = self.cells.thinned(where)
         return axis.quiver(*self.cells.positions[:, chosen] / self.length, *vectors[:, chosen], angles="xy",
                            scale_units="xy", scale=scale * self.length, pivot="mid", width=0.0045, **options)
+
+
+class Loop:
+    """Moment against twist at the ends of the steps, or, where nothing turns, force against displacement along the
+    direction of the largest force."""
+
+    def __init__(self, steps):
+        moment, twist = (np.array([step.get(key) or 0.0 for step in steps]) for key in ("moment", "twist_angle"))
+        limit = max(step.get("moment_limit") or 0.0 for step in steps)
+        self.title = "moment against twist"
+        self.names, self.units = ("twist", "moment"), (ANGLES, MOMENTS)
+        self.points = np.stack([twist, moment])
+        if np.abs(moment).max() > ROUNDING * limit:
+            return
+        force, displacement = (np.array([step.get(key) or (0.0, 0.0) for step in steps]) for key in
+                               ("force", "displacement"))
+        largest = force[np.hypot(*force.T).argmax()]
+        along = largest / (np.hypot(*largest) or 1.0)
+        self.title = "force against displacement"
+        self.names, self.units = ("displacement", "force"), (LENGTHS, FORCES)
+        self.points = np.stack([displacement @ along, force @ along])
+
+
+def draw_loop(axis, solved):
+    """The steps in their order; the one that the other panels show has a dot."""
+    loop = solved.loop
+    axis.set_title(loop.title, loc="left")
+    scales = [unit_for(np.abs(numbers).max(), units) for numbers, units in zip(loop.points, loop.units)]
+    x, y = (numbers / unit for numbers, (_, unit) in zip(loop.points, scales))
+    axis.plot(x, y, color=style.BLACK, linewidth=1.0, marker="." if len(x) <= MOST_MARKED else None, markersize=4)
+    axis.plot(x[solved.step - 1], y[solved.step - 1], "o", color=style.BLACK)
+    axis.set(xlabel=f"{loop.names[0]}, {scales[0][0]}", ylabel=f"{loop.names[1]}, {scales[1][0]}")
+    axis.set_box_aspect(1)
 
 
 def say(axis, words):
@@ -158,8 +199,8 @@ def details(solved):
     result = solved.result
     parts = [style.verbatim(text(result, "name"))]
     if result.get("steps"):
-        count, name = len(result["steps"]), result["steps"][-1]["name"]
-        parts.append(f"end of step {count} of {count}" + ("" if name.isdigit() else f", “{style.verbatim(name)}”"))
+        count, name = len(result["steps"]), result["steps"][solved.step - 1]["name"]
+        parts.append(f"end of step {solved.step} of {count}" + ("" if name.isdigit() else f", “{style.verbatim(name)}”"))
     if value(result, "cells"):
         parts.append("{} × {} cells".format(*value(result, "cells")))
     parts.append(f"normal load {plain(number(result, 'normal_load'))} N")
@@ -186,16 +227,24 @@ def finish(axis, solved):
 def draw(solved, titled=True):
     """The panels; `titled`: below what they show, in words."""
     stacked = solved.stacked
-    width = 7.2 if stacked else 11.0
+    panels = 4 if solved.loop else 3
+    width = 7.2 if stacked else 11.0 / 3 * panels
     lines = textwrap.wrap(details(solved), int(14.5 * width)) if titled else []
     head = HEAD + DETAIL * len(lines) + 0.15 if titled else 0.15
-    height = head + (3 * (solved.panel_height + 0.35) + 0.3 if stacked else solved.panel_height + 1.35)
+    height = head + (panels * (solved.panel_height + 0.35) + 0.3 if stacked else solved.panel_height + 1.35)
+    if stacked and solved.loop:
+        height += LOOP_HEIGHT - solved.panel_height
     figure = Figure(figsize=(width, height), layout="constrained")
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - head / height))
     if titled:
         figure.text(0.1 / width, 1 - 0.08 / height, message(solved), weight="bold", size=12, va="top")
         figure.text(0.1 / width, 1 - HEAD / height, "\n".join(lines), va="top", linespacing=1.4)
-    axes = figure.subplots(*((3, 1) if stacked else (1, 3)), sharex=True, sharey=True)
+    heights = [solved.panel_height] * 3 + [LOOP_HEIGHT] * (panels - 3)
+    grid = figure.add_gridspec(panels, 1, height_ratios=heights) if stacked else figure.add_gridspec(1, panels)
+    first = figure.add_subplot(grid[0])
+    axes = [first, *(figure.add_subplot(grid[i], sharex=first, sharey=first) for i in (1, 2))]
+    for axis in axes:
+        axis.label_outer()
     for axis, panel_of in zip(axes, (draw_slip, draw_traction, draw_pressure)):
         bar = panel_of(axis, solved)
         finish(axis, solved)
@@ -205,19 +254,28 @@ def draw(solved, titled=True):
         axis.set_xlabel(f"$x_1$, {solved.length_name}")
     for axis in axes if stacked else axes[:1]:
         axis.set_ylabel(f"$x_2$, {solved.length_name}")
+    if solved.loop:
+        draw_loop(figure.add_subplot(grid[3]), solved)
     return figure
 
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("result", type=Path, help="result of `slipstick solve --json`")
-    parser.add_argument("fields", type=Path, help="its contact cells, from `--fields` (HDF5)")
-    parser.add_argument("--output", type=Path, required=True, help="figure to write: " + ", ".join(style.FORMATS))
+    parser.add_argument("fields", type=Path, help="its contact cells, from `--fields` (HDF5); with {step} of each step")
+    parser.add_argument("--output", type=Path, required=True,
+                        help="figure to write: " + ", ".join(style.FORMATS) + "; with {step} one for each step")
     arguments = parser.parse_args(words)
 
     def work():
         result = load(arguments.result)
-        style.write(draw(Solved(result, Cells(arguments.fields, value(result, "cell_size")))), arguments.output)
+        size = value(result, "cell_size")
+        if STEP not in arguments.output.name:
+            return style.write(draw(Solved(result, Cells(arguments.fields, size))), arguments.output)
+        for step in range(1, max(len(result.get("steps") or []), 1) + 1):
+            fields, output = (Path(str(file).replace(STEP, str(step))) for file in (arguments.fields, arguments.output))
+            style.write(draw(Solved(result, Cells(fields, size), step)), output)
+        return None
 
     return script.run(work, (InputError, Unavailable), arguments.output)
 

@@ -8,6 +8,7 @@ from markupsafe import Markup, escape
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 STRESSES = (("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))
 ANGLES = (("rad", 1.0), ("mrad", 1e-3), ("µrad", 1e-6), ("nrad", 1e-9))
+FORCES = (("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 MOMENTS = (("N m", 1.0), ("mN m", 1e-3), ("µN m", 1e-6))
 ENERGIES = (("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
 

@@ -56,7 +56,9 @@ void require_figure_format(const fs::path& figure) {
 void draw_solve(const fs::path& figure, const Json& result, const TemporaryFolder& folder) {
   const fs::path json = folder / "result.json";
   solver::write_whole_file(json, json_text(result));
-  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, folder / kFieldsFile},
+  const bool of_steps = figure.string().find("{step}") != std::string::npos;
+  run_report_script("solve_figure.py",
+                    {"--output=" + figure.string(), json, folder / (of_steps ? kFieldsOfSteps : kFieldsFile)},
                     "the result is complete");
 }
 

@@ -21,11 +21,13 @@ void run_report_script(const std::string& script, const std::vector<std::string>
 /// Throws InputError unless a figure can have this ending and its folder exists.
 void require_figure_format(const std::filesystem::path& figure);
 
-/// File of the cells in the folder that draw_solve() takes.
+/// Files of the cells in the folder that draw_solve() takes: of the last step, and of each step.
 inline constexpr const char* kFieldsFile = "fields.h5";
+inline constexpr const char* kFieldsOfSteps = "fields-{step}.h5";
 
-/// Draws slip and stick, tractions and pressure of a result, whose cells are in kFieldsFile of the folder;
-/// the result is written there too. Throws as run_report_script().
+/// Draws slip and stick, tractions and pressure of a result, whose cells are in kFieldsFile of the folder, or
+/// of each step where the figure's name holds "{step}"; of a history its loop too. The result is written to
+/// the folder. Throws as run_report_script().
 void draw_solve(const std::filesystem::path& figure, const Json& result, const TemporaryFolder& folder);
 
 /// Draws errors, orders and budget of a study's result. Throws as run_report_script().

@@ -132,7 +132,8 @@ std::vector<Stage> page_stages(const PageRequest& request, const std::string& sc
                             {"costs", 5.0, scene},
                             {"hard variants", 2.0, scene},
                             {"rounding", 0.5, scene}};
-  if (request.validation) std::ranges::move(validation_stages(*request.validation), std::back_inserter(stages));
+  if (request.validation)
+    std::ranges::move(validation_stages(*request.validation), std::back_inserter(stages));
   return stages;
 }
 

@@ -93,6 +93,7 @@ SolveRecord exact_record(const solver::Scene& scene, const Oracle& oracle, doubl
   end.work.seconds.total = seconds;
   record.memory.peak_bytes = peak_bytes();
   record.provenance = provenance(1);
+  record.warnings = doubts_about(scene, record);
   return record;
 }
 

@@ -333,6 +333,7 @@ SolveRecord make_record(const solver::Scene& scene, const Solution& solution, co
                      .profile = {}};
   if (solution.grid.ranks.several()) record.memory.ranks = ranks_of(solution.grid.ranks);
   if (!steps.empty()) record.history = history_of(std::move(steps));
+  record.warnings = doubts_about(scene, record);
   record.end.energy.dissipated_total =
       record.history ? record.history->dissipated : number_or(solution.dissipated, kBroken);
   return record;

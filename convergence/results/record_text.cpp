@@ -12,6 +12,8 @@
 namespace slipstick::convergence {
 namespace {
 
+using solver::Units;
+
 /// Two sums over the same cells are equal within this, relative.
 constexpr double kEqualSums = 1e-12;
 
@@ -19,36 +21,43 @@ std::string error_text(double error) {
   return std::isnan(error) ? "" : fmt::format("   (error {:+.1e})", error);
 }
 
-std::string pair_text(const Components& pair) {
-  return fmt::format("[{}, {}]", number_text(pair.values[0]), number_text(pair.values[1]));
+/// A value in SI with the unit in which the scene's file has such numbers.
+std::string measured(const Units& units, double value, const std::string& si) {
+  return fmt::format("{} {}", number_text(units.of(si, value)), units.word(si));
+}
+
+std::string pair_text(const Units& units, const Components& pair, const std::string& si) {
+  return fmt::format("[{}, {}] {}", number_text(units.of(si, pair.values[0])),
+                     number_text(units.of(si, pair.values[1])), units.word(si));
 }
 
 /// Tangential force and translation, where they are not zero.
-std::string translation_text(const EndRecord& end) {
+std::string translation_text(const EndRecord& end, const Units& units) {
   std::string text;
   if (end.loads.force.length() > kEqualSums * end.friction.force) {
-    text += text_line("force", pair_text(end.loads.force) + " N");
+    text += text_line("force", pair_text(units, end.loads.force, "N"));
   }
   if (end.loads.displacement.length() > 0.0) {
     text += text_line("displacement",
-                      pair_text(end.loads.displacement) + " m" + error_text(end.errors.displacement));
+                      pair_text(units, end.loads.displacement, "m") + error_text(end.errors.displacement));
   }
   return text;
 }
 
-std::string area_text(const solver::CountedArea& area) {
-  return fmt::format("{} +/- {:.2g} m^2 ({} counted)", number_text(area.corrected), area.uncertainty,
-                     number_text(area.counted));
+std::string area_text(const solver::CountedArea& area, const Units& units) {
+  const auto in = [&](double square) { return units.of("m", units.of("m", square)); };
+  return fmt::format("{} +/- {:.2g} {}^2 ({} counted)", number_text(in(area.corrected)), in(area.uncertainty),
+                     units.word("m"), number_text(in(area.counted)));
 }
 
 /// The ratio only where the radius has no error: an exact solution may know the ratio without the radius.
-std::string stick_text(const EndRecord& end) {
+std::string stick_text(const EndRecord& end, const Units& units) {
   const ContactRecord& contact = end.contact;
   const std::string error = error_text(end.errors.stick_radius);
-  std::string text = text_line("stick radius", number_text(contact.stick_radius) + " m" + error);
+  std::string text = text_line("stick radius", measured(units, contact.stick_radius, "m") + error);
   if (contact.contact_radius == contact.contact_radius_counted) {  // the contact is no circle
-    text += text_line("contact area", area_text(contact.contact_area));
-    text += text_line("stick area", area_text(contact.stick_area));
+    text += text_line("contact area", area_text(contact.contact_area, units));
+    text += text_line("stick area", area_text(contact.stick_area, units));
   }
   if (error.empty()) {
     text += text_line("stick ratio", number_text(contact.stick_ratio) + error_text(end.errors.stick_ratio));
@@ -83,21 +92,21 @@ std::string status_text(const SolveRecord& record) {
 }
 
 /// State of the contact, with errors where they are known.
-std::string state_text(const EndRecord& end) {
+std::string state_text(const EndRecord& end, const Units& units) {
   const auto& [contact, friction, loads, energy, certificate, resolution, errors, work] = end;
   const bool has_peak = std::isfinite(contact.peak_pressure.value);
-  return text_line("normal load", number_text(contact.normal_load) + " N") +
+  return text_line("normal load", measured(units, contact.normal_load, "N")) +
          text_line("contact radius",
-                   number_text(contact.contact_radius) + " m" + error_text(errors.contact_radius)) +
+                   measured(units, contact.contact_radius, "m") + error_text(errors.contact_radius)) +
          text_line("peak pressure",
-                   has_peak ? number_text(contact.peak_pressure) + " Pa" + error_text(errors.peak_pressure)
+                   has_peak ? measured(units, contact.peak_pressure, "Pa") + error_text(errors.peak_pressure)
                             : contact.peak_pressure.why_missing) +
-         text_line("moment", fmt::format("{} N m = {} of the limit {} N m", number_text(loads.moment),
-                                         number_text(loads.moment_ratio), number_text(loads.moment_limit)) +
-                                 error_text(errors.moment)) +
-         text_line("twist", number_text(loads.twist_angle) + " rad" + error_text(errors.twist)) +
-         (loads.warning.empty() ? "" : text_line("warning", loads.warning)) + translation_text(end) +
-         stick_text(end);
+         text_line("moment",
+                   fmt::format("{} = {} of the limit {}", measured(units, loads.moment, "N m"),
+                               number_text(loads.moment_ratio), measured(units, loads.moment_limit, "N m")) +
+                       error_text(errors.moment)) +
+         text_line("twist", measured(units, loads.twist_angle, "rad") + error_text(errors.twist)) +
+         translation_text(end, units) + stick_text(end, units);
 }
 
 /// The parts of the problem that the model leaves out.
@@ -110,20 +119,24 @@ std::string model_text(const ProblemRecord& problem) {
 }
 
 /// One line for each step, of long histories for the last ones.
-std::string steps_text(const HistoryRecord& history) {
+std::string steps_text(const HistoryRecord& history, const Units& units) {
   constexpr std::size_t kMostLines = 24;
   const std::vector<StepRecord>& steps = history.steps;
   constexpr const char* kRow = "  {:<16} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n";
-  std::string text = fmt::format(kRow, "step", "W (N)", "M (N m)", "|F| (N)", "twist (rad)", "|delta| (m)",
-                                 "lost (J)", "gap");
+  const auto head = [&](const char* name, const char* si) {
+    return fmt::format("{} ({})", name, units.word(si));
+  };
+  const auto in = [&](double value, const char* si) { return short_text(units.of(si, value)); };
+  std::string text = fmt::format(kRow, "step", head("W", "N"), head("M", "N m"), head("|F|", "N"),
+                                 head("twist", "rad"), head("|delta|", "m"), "lost (J)", "gap");
   const std::size_t first = steps.size() > kMostLines ? steps.size() - kMostLines : 0;
   if (first > 0) text += fmt::format("  ({} steps before)\n", first);
   for (std::size_t i = first; i < steps.size(); ++i) {
     const EndRecord& end = steps[i].end;
-    text += fmt::format(kRow, steps[i].name, short_text(end.contact.normal_load),
-                        short_text(end.loads.moment), short_text(end.loads.force.length()),
-                        short_text(end.loads.twist_angle), short_text(end.loads.displacement.length()),
-                        short_text(end.energy.dissipated), short_text(end.certificate.gap));
+    text += fmt::format(kRow, steps[i].name, in(end.contact.normal_load, "N"), in(end.loads.moment, "N m"),
+                        in(end.loads.force.length(), "N"), in(end.loads.twist_angle, "rad"),
+                        in(end.loads.displacement.length(), "m"), short_text(end.energy.dissipated),
+                        short_text(end.certificate.gap));
   }
   return text +
          text_line("history",
@@ -134,12 +147,13 @@ std::string steps_text(const HistoryRecord& history) {
 }
 
 /// The factor by which the loads could rise, and how the body would slide then.
-std::string limit_text(const LimitRecord& limit) {
+std::string limit_text(const LimitRecord& limit, const Units& units) {
   if (!limit.centre && !limit.direction) return "";
   const std::array<double, 2>& pair = limit.centre ? *limit.centre : *limit.direction;
+  const auto in = [&](double x) { return short_text(limit.centre ? units.of("m", x) : x); };
   return text_line("limit", fmt::format("{} times these loads; it would slide {} ({}, {}){}",
                                         number_text(limit.factor), limit.centre ? "turning about" : "along",
-                                        short_text(pair[0]), short_text(pair[1]), limit.centre ? " m" : ""));
+                                        in(pair[0]), in(pair[1]), limit.centre ? " " + units.word("m") : ""));
 }
 
 std::string field_error_text(const std::string& label, const FieldErrorRecord& error) {
@@ -171,16 +185,18 @@ std::string unit_of(const std::string& number) {
 }
 
 /// Resolution of the mesh, and the uncertainty of the answer.
-std::string resolution_text(const ResolutionRecord& resolved) {
+std::string resolution_text(const ResolutionRecord& resolved, const Units& units) {
   const bool open = resolved.absolute != 0.0;
   const std::string number = resolved.number == "twist_angle" ? "twist" : resolved.number;
   const std::string percent = percent_text(resolved.uncertainty);
+  const std::string si = unit_of(resolved.number);
+  const auto in = [&](double value) { return short_text(units.of(si, value)); };
   const std::string text = text_line("resolved", fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
                                                              resolved.stick_width, resolved.slip_width));
   const std::string uncertain =
       text_line("uncertain", open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}", number,
-                                                short_text(resolved.absolute), unit_of(resolved.number),
-                                                percent, short_text(resolved.mesh), short_text(resolved.path))
+                                                in(resolved.absolute), units.word(si), percent,
+                                                in(resolved.mesh), in(resolved.path))
                                   : "by about " + percent);
   return text + uncertain + (resolved.warning.empty() ? "" : text_line("warning", resolved.warning));
 }
@@ -240,13 +256,13 @@ std::string right_direction_text(solver::FrictionKind law) {
   return law == solver::FrictionKind::coulomb ? "Coulomb: 0" : "right: 0";
 }
 
-std::string solve_text(const SolveRecord& record) {
-  const std::string state = title_of(record) + status_text(record) + state_text(record.end);
+std::string solve_text(const SolveRecord& record, const Units& units) {
+  const std::string state = title_of(record) + status_text(record) + state_text(record.end, units);
   if (record.is_exact()) return state + model_text(record.problem);
-  return state + limit_text(record.end.loads.limit) + coupling_text(record) +
+  return state + limit_text(record.end.loads.limit, units) + coupling_text(record) +
          exact_answer_text(record.end.errors) + certificate_text(record) +
-         resolution_text(record.end.resolution) + model_text(record.problem) +
-         (record.history ? steps_text(*record.history) : "");
+         resolution_text(record.end.resolution, units) + model_text(record.problem) +
+         (record.history ? steps_text(*record.history, units) : "");
 }
 
 }  // namespace slipstick::convergence

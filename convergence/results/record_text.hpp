@@ -3,11 +3,12 @@
 #include <string>
 
 #include "convergence/results/solve_record.hpp"
+#include "solver/input/units.hpp"
 
 namespace slipstick::convergence {
 
-/// The answer of a solve in a few lines for a person.
-std::string solve_text(const SolveRecord& record);
+/// The answer of a solve in a few lines for a person, in the units of the scene's file.
+std::string solve_text(const SolveRecord& record, const solver::Units& units = solver::Units());
 
 /// The law of a result's key friction_law; empty: Coulomb's.
 solver::FrictionKind friction_law_of(const std::string& word);

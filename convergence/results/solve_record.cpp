@@ -361,6 +361,7 @@ void list_fields(auto& fields, Is<SolveRecord> auto& record) {
   fields("name", record.name);
   fields("status", record.status);
   fields.unless_empty("message", record.message);
+  fields.unless_empty("warnings", record.warnings);
   fields.unless_empty("method", record.problem.method);
   if (record.is_exact()) return list_exact(fields, record);
   if (!record.problem.method.empty()) return list_on_grid(fields, record);

@@ -335,10 +335,11 @@ struct ProfilePoint {
 /// answer; the steps of a history that broke off; or the reason why a run has no answer.
 struct SolveRecord {
   RunStatus status = RunStatus::not_converged;
-  std::string message = {};    ///< why it is not converged
-  std::string run = {};        ///< of a run without an answer: its scene and overrides
-  bool out_of_memory = false;  ///< it was refused for its memory
-  std::string name = {};       ///< of the scene
+  std::string message = {};                ///< why it is not converged
+  std::string run = {};                    ///< of a run without an answer: its scene and overrides
+  bool out_of_memory = false;              ///< it was refused for its memory
+  std::string name = {};                   ///< of the scene
+  std::vector<std::string> warnings = {};  ///< see doubts_about()
   ProblemRecord problem = {};
   EndRecord end = {};
   MethodRecord method = {};

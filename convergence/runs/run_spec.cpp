@@ -80,6 +80,7 @@ void measure_in_millimetres(Scene& scene) {
   constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
   for (solver::Material* const body : {&scene.upper, &scene.lower}) {
     body->young_modulus *= of_stress;
+    if (body->yield_stress) *body->yield_stress *= of_stress;
     if (!body->coating) continue;
     body->coating->young_modulus *= of_stress;
     body->coating->thickness *= kMillimetres;

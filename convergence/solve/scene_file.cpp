@@ -30,9 +30,13 @@ std::vector<UncertainInput> numbers_of(const SceneFile& scene) {
     for (const std::string& assignment : reader.assignments(table)) {
       const std::size_t equals = assignment.find('=');
       const std::string name = assignment.substr(0, equals);
-      const auto value = number_of(std::string_view(assignment).substr(equals + 1));
+      std::string text = assignment.substr(equals + 1);
+      std::erase_if(text, [](char c) { return c == '"' || c == '\''; });  // of a text such as "10 mm"
+      const std::size_t blank = std::min(text.find(' '), text.size());
+      const auto value = number_of(std::string_view(text).substr(0, blank));
       if (!value || *value == 0.0 || name.ends_with("seed")) continue;
-      numbers.push_back({.key = table + "." + name, .value = *value, .relative = 0});
+      numbers.push_back(
+          {.key = table + "." + name, .value = *value, .unit = text.substr(blank), .relative = 0});
     }
   }
   return numbers;

@@ -27,9 +27,10 @@ struct SceneFile {
 
 /// A number of a scene with its uncertainty.
 struct UncertainInput {
-  std::string key;  ///< for example contact.friction
-  double value;     ///< in the scene
-  double relative;  ///< standard uncertainty over the value
+  std::string key;   ///< for example contact.friction
+  double value;      ///< in the scene
+  std::string unit;  ///< behind the value, as " mm"; empty: none
+  double relative;   ///< standard uncertainty over the value
 };
 
 /// Reads "key=5%". A key without its table means all numbers of that name in upper, lower, contact and load.

@@ -7,6 +7,7 @@
 #include "convergence/commands.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
+#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -79,18 +80,31 @@ void add_file_options(CLI::App& command, SolveWords& words) {
       .add_flag("--resume", words.request.checkpoint.resume,
                 "continue from the --checkpoint file if it exists; the result is the same as without a break")
       ->needs(command.get_option("--checkpoint"));
-  command.add_option("--figure", words.request.files.figure,
-                     "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
+  command.add_option(
+      "--figure", words.request.files.figure,
+      "draw slip and stick, tractions and pressure, and of a history its loop: .svg, .pdf or .png; "
+      "of the last step, or of each step where the name holds {step}");
+  command.add_option(
+      "--loop", words.request.files.loop,
+      "write loads, motions and energies at the end of each step of a history, a row a step: .csv");
 }
 
 void require_file_formats(const AnswerFiles& files) {
   if (!files.fields.empty()) solver::require_field_format(files.fields);
   if (!files.figure.empty()) require_figure_format(files.figure);
-  if (has_step(files.figure)) {
-    throw InputError(
-        "--figure " + files.figure,
-        "allowed: a name without {step}: the figure shows the last step (--fields takes {step})");
-  }
+  if (!files.loop.empty() && !files.loop.ends_with(".csv"))
+    throw InputError("--loop " + files.loop, "allowed ending: .csv");
+}
+
+/// Throws InputError where the cells of all steps cannot be had.
+void require_cells_of_steps(const SolveRequest& request) {
+  const bool exact = request.scene.solver.model == solver::ModelChoice::exact;
+  if (!exact && request.checkpoint.file.empty()) return;
+  throw InputError("--figure " + request.files.figure,
+                   exact
+                       ? "allowed: a name without {step}: an exact solution has the cells of the last step"
+                       : "allowed: a name without {step}: with --checkpoint the steps before a break are not "
+                         "drawn (--fields takes {step})");
 }
 
 /// Throws InputError where a file of the scene would be overwritten.
@@ -170,8 +184,13 @@ SolveRequest request_of(const CLI::App& command, SolveWords words) {
   if (request.ranks.several()) require_shared_by_ranks(words, request.scene);
   require_scene_kept(command, request.files.fields, request.scene);
   require_output("--fields", request.files.fields);
+  require_output("--loop", request.files.loop);
   require_output("--checkpoint", request.checkpoint.file);
   if (words.accuracy) set_target(words, request);
+  if (has_step(request.files.figure)) {
+    require_cells_of_steps(request);
+    request.files.cells_of_steps = std::make_shared<TemporaryFolder>();
+  }
   if (!words.uncertain.empty()) request.uncertain = uncertain_inputs(request.source, words.uncertain);
   return std::move(request);
 }

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/python_script.hpp"
@@ -41,18 +42,44 @@ void show_progress(int iteration, double change) {
 /// a history with one file a step were written at the end of that step.
 template <typename WriteFields>
 void write_files(const SolveRequest& request, const Json& result, const WriteFields& write_fields) {
-  const auto& [fields, figure] = request.files;
+  const auto& [fields, figure, loop, cells_of_steps] = request.files;
   if (!fields.empty() && !has_step(fields)) write_fields(fields);
-  if (figure.empty()) return;
+  if (cells_of_steps && request.ranks.first()) draw_solve(figure, result, *cells_of_steps);
+  if (figure.empty() || cells_of_steps) return;
   if (!request.ranks.first()) return write_fields(figure + ".h5");  // its cells go to the first rank's file
   const TemporaryFolder folder;
   write_fields(folder / kFieldsFile);
   draw_solve(figure, result, folder);
 }
 
+/// The names of its columns are those that `check` reads from a loop.
+std::string loop_table(const SolveRecord& record) {
+  std::string table =
+      "step,normal_load,moment,rotation,force_1,force_2,displacement_1,displacement_2,dissipated\n";
+  std::size_t number = 0;
+  const auto add = [&](const EndRecord& end) {
+    const auto& [force, displacement] = std::tie(end.loads.force.values, end.loads.displacement.values);
+    table += fmt::format("{},{},{},{},{},{},{},{},{}\n", ++number, end.contact.normal_load.value,
+                         end.loads.moment.value, end.loads.twist_angle.value, force[0], force[1],
+                         displacement[0], displacement[1], end.energy.dissipated.value);
+  };
+  if (!record.history) add(record.end);
+  for (const StepRecord& step : record.history.value_or(HistoryRecord()).steps) add(step.end);
+  return table;
+}
+
+/// Writes the loop, and the reasons to doubt the scene to standard error.
+void report(const SolveRequest& request, const SolveRecord& record) {
+  if (!request.ranks.first()) return;
+  for (const std::string& warning : record.warnings)
+    std::cerr << plain_text(fmt::format("slipstick: warning: {}\n", warning));
+  if (!request.files.loop.empty()) write_option_file("--loop", request.files.loop, loop_table(record));
+}
+
 void write_answer(const SolveRequest& request, const SolvedScene& answer, std::ostream& text,
                   const Json& result) {
-  text << solve_text(answer.record);
+  text << solve_text(answer.record, solver::Units(request.scene.units));
+  report(request, answer.record);
   write_files(request, result,
               [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
 }
@@ -74,10 +101,14 @@ AllowedPrograms allowed_programs() { return {.all = true, .tied_by = own_program
 
 /// Options of a solve on a grid that writes the fields of each step if the request names one file a step.
 SolveSceneOptions grid_options(const SolveRequest& request, std::size_t finished_steps = 0) {
-  const auto write_step = [&fields = request.files.fields, step = finished_steps](
-                              const solver::Solution& at, const OracleAnswer& exact) mutable {
+  const auto write_step = [&files = request.files, step = finished_steps](const solver::Solution& at,
+                                                                          const OracleAnswer& exact) mutable {
     ++step;
-    if (has_step(fields)) write_solution_fields(file_of_step(fields, step), at, exact);
+    if (has_step(files.fields)) write_solution_fields(file_of_step(files.fields, step), at, exact);
+    if (files.cells_of_steps) {
+      const std::string cells = file_of_step(kFieldsOfSteps, step);
+      write_solution_fields(*files.cells_of_steps / cells.c_str(), at, exact);
+    }
   };
   return {.progress = request.ranks.first() ? show_progress : nullptr,
           .on_step = write_step,
@@ -138,7 +169,8 @@ SolveRecord answer_exactly(const SolveRequest& request, std::ostream& text, Json
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SolveRecord record = exact_record(request.scene, oracle, seconds);
   result = to_json(record);
-  text << solve_text(record);
+  text << solve_text(record, solver::Units(request.scene.units));
+  report(request, record);
   write_files(request, result,
               [&](const auto& file) { write_exact_fields(file, request.scene, oracle, request.ranks); });
   return record;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <iosfwd>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,10 +14,15 @@
 
 namespace slipstick::convergence {
 
-/// Files for the cells of an answer; empty: none.
+class TemporaryFolder;
+
+/// Files for the cells and steps of an answer; empty: none.
 struct AnswerFiles {
   std::string fields;  ///< of the last step, or of each step where the name holds "{step}"
-  std::string figure;
+  std::string figure;  ///< the same; of a history with its loop
+  std::string loop;    ///< CSV with a row for each step
+  /// Gets the cells of each step that the figures need; null: the figure shows the last step.
+  std::shared_ptr<const TemporaryFolder> cells_of_steps;
 };
 
 /// Whether a name holds "{step}", and the name with the step's number there.

@@ -96,7 +96,8 @@ struct Neighbours {
   SolveRecord at(const std::vector<double>& off) const {
     std::vector<std::string> changed = overrides;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      changed.push_back(fmt::format("{}={:.16e}", inputs[i].key, inputs[i].value * (1 + off[i])));
+      changed.push_back(
+          fmt::format("{}={:.16e}{}", inputs[i].key, inputs[i].value * (1 + off[i]), inputs[i].unit));
     }
     try {
       const solver::Scene at = scene.read(changed);

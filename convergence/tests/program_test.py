@@ -93,9 +93,11 @@ class Program(ProgramTest):
             self.assertEqual(json.loads(Path("kept.json").read_text())["status"], "converged")
 
     def test_what_has_no_place_or_kind_is_refused_before_the_solve(self):
-        for option, file, says in (("--figure", "f.jpg", ("--figure", "f.jpg", ".svg, .pdf, .png")),
-                                   ("--figure", "f-{step}.png", ("--figure", "{step}", "last step"))):
-            self.run_program(*solve("paper", option, file, "--json", "refused.json"), code=2, says=says)
+        for option, file, *says in (("--figure", "f.jpg", "--figure", "f.jpg", ".svg, .pdf, .png"),
+                                    ("--figure", "f-{step}.png", "--model=exact", "{step}", "last step"),
+                                    ("--loop", "loop.svg", "--loop", ".csv")):
+            options = [says.pop(0)] if says[0].startswith("--model") else []
+            self.run_program(*solve("paper", option, file, *options, "--json", "refused.json"), code=2, says=says)
             self.assertFalse(Path("refused.json").exists(), option)
 
     def test_what_an_environment_lacks_is_named(self):

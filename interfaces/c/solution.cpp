@@ -120,7 +120,7 @@ convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request
   return convergence::solve_scene(scene, {.progress = progress, .cache = cache, .detail = detail});
 }
 
-void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
+void keep(slipstick_solution& kept, const convergence::SolvedScene& solved, const Scene& scene) {
   kept.grid = solved.solution.grid;
   const solver::Index cells = kept.grid.cells();
   for (const solver::FieldColumn& column : convergence::solution_columns(solved.solution, solved.exact)) {
@@ -129,7 +129,7 @@ void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
   }
   kept.pressure = solved.solution.pressure;
   kept.result = to_json(solved.record);
-  kept.text = solve_text(solved.record);
+  kept.text = solve_text(solved.record, solver::Units(scene.units));
 }
 
 void answer_exactly(slipstick_solution& kept, const Scene& scene) {
@@ -138,7 +138,7 @@ void answer_exactly(slipstick_solution& kept, const Scene& scene) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const convergence::SolveRecord record = convergence::exact_record(scene, oracle, taken.count());
   kept.result = to_json(record);
-  kept.text = solve_text(record);
+  kept.text = solve_text(record, solver::Units(scene.units));
   if (!oracle.shear) return;
   convergence::GridColumns fields = convergence::exact_columns(scene, oracle);
   kept.grid = fields.grid;
@@ -153,7 +153,7 @@ std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, con
     return {};
   }
   const convergence::SolvedScene solved = find_on_grid(scene, request);
-  keep(kept, solved);
+  keep(kept, solved, scene);
   return solved.solution.status == solver::Status::converged ? std::string() : solved.solution.message;
 }
 
@@ -177,7 +177,7 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
       convergence::solve_to_accuracy(scene, target, [&](const Scene& chosen, solver::Detail detail) {
         return find_on_grid(chosen, request, cache, detail);
       });
-  keep(kept, answer.answer);
+  keep(kept, answer.answer, scene);
   kept.result["accuracy"] = to_json(answer.accuracy);
   const std::string account = accuracy_text(answer.accuracy);
   kept.text += account;

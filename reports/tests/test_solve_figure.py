@@ -2,6 +2,7 @@
 
 import io
 import json
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree
@@ -95,6 +96,36 @@ class Names(Figure):
             self.write(*disc(9, 5), changes={"steps": [{"name": name} for name in names]})
             parts = solve_figure.details(self.solved()).replace("\N{NO-BREAK SPACE}", " ").split("  ·  ")
             self.assertIn(words, parts)
+
+
+class Histories(Figure):
+    STEPS = [{"name": f"{k}", "moment": 1e-6 * m, "twist_angle": 1e-3 * m * abs(m), "moment_limit": 5e-6} for k, m in
+             enumerate((1, 2, 1, -1))]
+
+    def test_a_loop_is_drawn_next_to_the_last_step(self):
+        self.write(*disc(9, 5), changes={"steps": self.STEPS})
+        axis = solve_figure.draw(self.solved()).axes[-1]
+        self.assertEqual((axis.get_xlabel(), axis.get_ylabel()), ("twist, mrad", "moment, µN m"))
+        loop, shown = axis.lines
+        np.testing.assert_allclose(loop.get_data(), ([1, 4, 1, -1], [1, 2, 1, -1]))
+        np.testing.assert_allclose(shown.get_data(), ([-1], [-1]))
+
+    def test_without_moments_force_is_drawn_against_displacement(self):
+        steps = [{"name": f"{k}", "moment": 1e-22, "moment_limit": 5e-6, "force": (3 * f, 4 * f), "displacement": (3e-9 * f, 4e-9 * f)}
+                 for k, f in enumerate((1.0, -0.5))]
+        self.write(*disc(9, 5), changes={"steps": steps})
+        axis = solve_figure.draw(self.solved()).axes[-1]
+        self.assertEqual((axis.get_xlabel(), axis.get_ylabel()), ("displacement, nm", "force, N"))
+        np.testing.assert_allclose(axis.lines[0].get_data(), ([5, -2.5], [5, -2.5]))
+
+    def test_each_step_gets_a_file_of_its_own(self):
+        self.write(*disc(9, 5), changes={"steps": self.STEPS[:2]})
+        for step in (1, 2):
+            shutil.copy(self.fields, self.folder / f"fields-{step}.h5")
+        words = [str(self.folder / "result.json"), str(self.folder / "fields-{step}.h5"), "--output"]
+        self.assertEqual(solve_figure.main([*words, str(self.folder / "slip-{step}.svg")]), 0)
+        texts = [(self.folder / f"slip-{step}.svg").read_text(encoding="utf-8") for step in (1, 2)]
+        self.assertNotEqual(*texts)
 
 
 class WhatItShows(Figure):

@@ -16,6 +16,7 @@
 #include "solver/input/datasets.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/units.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -31,13 +32,6 @@ constexpr std::string_view kBlanks = " \t\r";
 constexpr std::array kSeparators{';', '\t', ',', ' '};
 constexpr std::string_view kSeparatorsInWords =
     "commas, semicolons, tabs or blanks between columns; no commas between them where they are decimal marks";
-
-/// Powers of ten of SI units.
-constexpr std::array<std::pair<std::string_view, int>, 26> kUnits{
-    {{"m", 0},      {"cm", -2},   {"mm", -3}, {"um", -6}, {"\xC2\xB5m", -6}, {"\xCE\xBCm", -6}, {"nm", -9},
-     {"Pa", 0},     {"kPa", 3},   {"MPa", 6}, {"GPa", 9}, {"N/m2", 0},       {"N/m^2", 0},      {"N/mm2", 6},
-     {"N/mm^2", 6}, {"N", 0},     {"kN", 3},  {"N m", 0}, {"Nm", 0},         {"N mm", -3},      {"Nmm", -3},
-     {"rad", 0},    {"mrad", -3}, {"s", 0},   {"ms", -3}, {"-", 0}}};
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kAround = " \t\r\"";
@@ -63,24 +57,6 @@ Heading heading_of(std::string_view text) {
   if (open == std::string_view::npos || open == 0 || (text.back() != ']' && text.back() != ')'))
     return {text, ""};
   return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2))};
-}
-
-/// A number with a decimal point or comma, times a power of ten, rounded once, so that the power of ten
-/// changes no digit. Fortran's D is read as e.
-std::optional<double> parse_number(std::string_view text, int power) {
-  std::string plain(text);
-  std::ranges::replace(plain, ',', '.');
-  if (power != 0 && plain.find_first_of("nN") == std::string::npos) {
-    const std::size_t mantissa = std::min(plain.find_first_of("eEdD"), plain.size());
-    const long written = mantissa < plain.size() ? std::strtol(plain.c_str() + mantissa + 1, nullptr, 10) : 0;
-    plain = plain.substr(0, mantissa) + fmt::format("e{}", std::clamp(written, -9999L, 9999L) + power);
-  } else if (const auto exponent = plain.find_first_of("dD"); exponent != std::string::npos) {
-    plain[exponent] = 'e';
-  }
-  char* end = nullptr;
-  const double value = std::strtod(plain.c_str(), &end);
-  if (plain.empty() || end != plain.c_str() + plain.size()) return {};
-  return value;
 }
 
 /// The text of a table, line by line. Lines without anything are skipped.
@@ -256,13 +232,13 @@ class TextTable {
 
 int power_of(const path& file, const Heading& heading) {
   if (heading.unit.empty()) return 0;
-  const auto found = std::ranges::find(kUnits, heading.unit, [](const auto& unit) { return unit.first; });
-  if (found == kUnits.end()) {
+  const Unit* const unit = find_unit(heading.unit);
+  if (unit == nullptr) {
     throw InputError(file.string(),
                      fmt::format("column {}: unit {}; allowed: {}", shown(heading.name), shown(heading.unit),
-                                 fmt::join(std::views::keys(kUnits), ", ")));
+                                 fmt::join(kUnits | std::views::transform(&Unit::word), ", ")));
   }
-  return found->second;
+  return unit->power;
 }
 
 /// The place of a name in a header.

@@ -4,14 +4,13 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <map>
 #include <ranges>
 #include <sstream>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/long_key.hpp"
 #include "solver/input/misspelling.hpp"
 
 namespace slipstick::solver {
@@ -19,59 +18,7 @@ namespace {
 
 /// Unknown keys that one message lists, at most.
 constexpr std::size_t kMostListed = 20;
-/// Parts of a dotted key, at most. No key that is read has more than five; keys nest 256 deep at most.
-constexpr std::size_t kMaxKeyParts = 32;
 const std::string kLongKey = fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts);
-
-/// Where the string or comment that begins at a place ends: the place behind it; the place itself where none
-/// begins there.
-std::size_t end_of_words(const std::string& text, std::size_t at) {
-  const char quote = text[at];
-  if (quote == '#') return std::min(text.find('\n', at), text.size());
-  if (quote != '"' && quote != '\'') return at;
-  const std::string lines(3, quote);
-  const std::string end = text.compare(at, 3, lines) == 0 ? lines : std::string(1, quote);
-  for (std::size_t i = at + end.size(); i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') {
-      ++i;
-    } else if (text.compare(i, end.size(), end) == 0) {
-      i += end.size();  // behind three quotes two more may stand, which belong to the string
-      return end == lines ? std::min(text.find_first_not_of(quote, i), i + 2) : i;
-    }
-  }
-  return text.size();
-}
-
-/// The line of the first key of a TOML text that is too long; 0: there is none. toml++ destroys tables in
-/// tables recursively: keys of a million parts would overrun the stack. The dots outside of strings are
-/// counted; a key inside a table in braces has the parts of the keys around that table too.
-std::ptrdiff_t line_of_long_key(const std::string& text) {
-  struct Table {
-    std::size_t around = 0;  ///< parts of the keys in front of all open braces
-    std::size_t key = 1;     ///< of its key before the last '='
-  };
-  std::vector<Table> tables(1);
-  std::size_t parts = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::size_t behind = end_of_words(text, i);
-    if (behind > i) {
-      i = behind - 1;
-      continue;
-    }
-    const char c = text[i];
-    if (c == '.') ++parts;
-    if (c == '=') tables.back().key = parts;
-    if (c == '{') tables.push_back({.around = tables.back().around + tables.back().key});
-    if (c == '}' && tables.size() > 1) tables.pop_back();
-    const bool in_key =
-        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
-    if (!in_key) parts = 1;
-    if (tables.back().around + parts > kMaxKeyParts) {
-      return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-    }
-  }
-  return 0;
-}
 
 toml::table parse(const std::string& text, const std::string& file) {
   if (text.find('\0') != std::string::npos) {
@@ -105,8 +52,11 @@ std::optional<double> number_of(const toml::node& node) {
   return std::nullopt;
 }
 
+/// Powers of a length in an SI unit: the other parts of the unit are forces.
+const std::map<std::string, int> kLengthPowers{{"m", 1}, {"Pa", -2}, {"N m", 1}, {"m/Pa", 3}};
+
 /// The allowed numbers; after a text such as .5 or 5., which shells and C accept, also how TOML writes it.
-std::string for_number(const toml::node& node, const std::string& allowed) {
+std::string with_point(const toml::node& node, const std::string& allowed) {
   const std::string text = fmt::format(" {} ", node.value_or(std::string()));
   const auto is_digit = [&](std::size_t at) { return text[at] >= '0' && text[at] <= '9'; };
   for (std::size_t at = 1; (at = text.find('.', at)) != std::string::npos; ++at) {
@@ -162,6 +112,27 @@ struct SceneReader::ReadKeys {
   toml::table root;
   std::map<std::string, SettingKey> keys;
   std::set<std::string> read;
+  Units units;
+  int length_power = 0;  ///< numbers without a unit are in a set of units whose length is 10^length_power m
+
+  /// A value in SI: of a number, or of a text with a unit where the key has one; none for others.
+  std::optional<double> number(const toml::node& node, const std::string& key) {
+    const auto found = keys.find(without_indices(key));
+    const std::string unit = found == keys.end() ? "" : found->second.unit;
+    if (const auto* const text = node.as_string()) return units.read(text->get(), unit);
+    const auto value = number_of(node);
+    const auto power = kLengthPowers.find(unit);
+    if (!value || length_power == 0 || power == kLengthPowers.end()) return value;
+    return parse_number(fmt::format("{}", *value), length_power * power->second);
+  }
+  /// What a number's key allows, with its units and with a hint at TOML's form.
+  std::string for_number(const toml::node& node, const std::string& key, const std::string& allowed) const {
+    const auto found = keys.find(without_indices(key));
+    const std::string words = found == keys.end() ? "" : Units::list(found->second.unit);
+    const bool has_units = node.is_string() && !words.empty();
+    return with_point(node,
+                      has_units ? fmt::format("{}; or a text with a unit, {}", allowed, words) : allowed);
+  }
 
   const SettingKey& setting(const std::string& key) const {
     const auto found = keys.find(without_indices(key));
@@ -206,7 +177,9 @@ SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<st
 
 SceneReader::SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
                          const SettingKeys& keys)
-    : file_(settings.file), toml_(new ReadKeys{parse(settings.text, settings.file.string()), {}, {}}) {
+    : file_(settings.file),
+      toml_(new ReadKeys{
+          .root = parse(settings.text, settings.file.string()), .keys = {}, .read = {}, .units = Units()}) {
   for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key);
   for (const std::string& assignment : overrides) apply_override(assignment);
   if (!keys.empty()) refuse_unless([this](const std::string& key) { return toml_->allows(key); });
@@ -311,6 +284,22 @@ void SceneReader::fail_choice(const std::string& key, const std::string& word,
   fail(key, fmt::format("\"{}\"", word), fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
+void SceneReader::measure_in(int length_power) {
+  toml_->length_power = length_power;
+  if (length_power == 0) return;
+  for (const auto& [si, power] : kLengthPowers) {
+    const auto* const unit = std::ranges::find_if(
+        kUnits, [&](const Unit& each) { return each.si == si && each.power == length_power * power; });
+    if (unit != kUnits.end()) toml_->units.use(si, unit->word);
+  }
+}
+
+double SceneReader::in_si(double value, double of_length) const {
+  return value * std::pow(10.0, toml_->length_power * of_length);
+}
+
+const Units& SceneReader::units() const { return toml_->units; }
+
 bool SceneReader::has(const std::string& key) { return static_cast<bool>(toml_->node(key)); }
 
 bool SceneReader::is_array(const std::string& key) { return toml_->node(key).is_array(); }
@@ -335,9 +324,10 @@ std::optional<double> SceneReader::find_number(const std::string& key, const Ran
   const Range& allowed = range_for(key, range);
   const auto found = toml_->node(key);
   if (!found) return std::nullopt;
-  const auto value = number_of(*found.node());
+  const auto value = toml_->number(*found.node(), key);
   if (!value) {
-    fail(key, print(*found.node()), for_number(*found.node(), fmt::format("a number, {}", allowed.words)));
+    fail(key, print(*found.node()),
+         toml_->for_number(*found.node(), key, fmt::format("a number, {}", allowed.words)));
   }
   if (!allowed.contains(*value)) fail(key, print(*found.node()), allowed.words);
   return value;
@@ -360,11 +350,11 @@ std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& k
   const toml::array* const array = found.as_array();
   const std::string allowed = fmt::format("[a, b], two numbers, each {}", each.words);
   if (array == nullptr || array->size() != 2) {
-    fail(key, print(*found.node()), for_number(*found.node(), allowed));
+    fail(key, print(*found.node()), with_point(*found.node(), allowed));
   }
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto value = number_of((*array)[i]);
+    const auto value = toml_->number((*array)[i], key);
     if (!value || !each.contains(*value)) fail(key, print(*found.node()), allowed);
     pair[i] = *value;
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solver/input/setting_key.hpp"
+#include "solver/input/units.hpp"
 
 namespace slipstick::solver {
 
@@ -32,6 +33,14 @@ class SceneReader {
               const SettingKeys& keys = {});
   SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
               const SettingKeys& keys = {});
+
+  /// Numbers without a unit are in a consistent set of units from now on: 10^length_power m, and N. A text
+  /// such as "10 mm" names its own unit.
+  void measure_in(int length_power);
+  /// A value whose SI unit is a power of a length, in this set, by forces.
+  double in_si(double value, double of_length) const;
+  /// The units of the numbers that were read.
+  const Units& units() const;
 
   /// If the command line sets one of several mutually exclusive keys, the file's other keys of that group are
   /// dropped.

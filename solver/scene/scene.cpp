@@ -18,6 +18,7 @@ namespace {
 
 Surface read_surface(SceneReader& reader, const std::string& table) {
   Surface surface;
+  surface.key = table;
   surface.shape = reader.choice(table + ".shape", shape_words());
   Roughness& roughness = surface.roughness;
   if (surface.shape == Shape::roughness) {
@@ -26,7 +27,9 @@ Surface read_surface(SceneReader& reader, const std::string& table) {
   for (const ShapeNumber& number : shape_numbers()) {
     if (number.belongs_to(surface.shape)) number.of(surface) = reader.number(table + "." + number.name);
   }
-  if (surface.shape == Shape::flat_punch) {
+  if (surface.shape == Shape::power) {  // its unit is m^(1 - exponent)
+    surface.coefficient = reader.in_si(surface.coefficient, 1.0 - surface.exponent);
+  } else if (surface.shape == Shape::flat_punch) {
     surface.inner_radius =
         reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
   } else if (surface.shape == Shape::roughness) {
@@ -45,19 +48,32 @@ Surface read_surface(SceneReader& reader, const std::string& table) {
   return surface;
 }
 
-/// The shapes of the indenter: one by the keys of [upper], or several by tables [[upper.shape]] with the same
+/// The shapes of a body: one by the keys of its table, or several by tables [[upper.shape]] with the same
 /// keys.
-std::vector<Surface> read_surfaces(SceneReader& reader) {
-  if (!reader.is_array("upper.shape")) return {read_surface(reader, "upper")};
+std::vector<Surface> read_surfaces(SceneReader& reader, const std::string& body) {
+  const std::string shapes = body + ".shape";
+  if (!reader.is_array(shapes)) return {read_surface(reader, body)};
   std::vector<Surface> surfaces;
-  const std::size_t count = reader.count("upper.shape");
+  const std::size_t count = reader.count(shapes);
   if (count > kMaxShapes) {
-    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMaxShapes));
+    reader.fail(shapes, fmt::format("{} tables", count), fmt::format("at most {}", kMaxShapes));
   }
   for (std::size_t i = 0; i < count; ++i) {
-    surfaces.push_back(read_surface(reader, fmt::format("upper.shape[{}]", i)));
+    surfaces.push_back(read_surface(reader, fmt::format("{}[{}]", shapes, i)));
   }
   return surfaces;
+}
+
+/// The shapes of both bodies. The gap is the sum of the two bodies' gaps.
+void read_shapes(SceneReader& reader, Scene& scene) {
+  scene.surfaces = read_surfaces(reader, "upper");
+  if (scene.surfaces.size() > 1)
+    scene.combine = reader.choice_or("upper.combine", scene.combine, kCombinations);
+  if (!reader.has("lower.shape")) return;
+  const std::vector<Surface> lower = read_surfaces(reader, "lower");
+  if (scene.combine == Combine::nearest)
+    reader.fail("lower.shape", "(given)", "none with upper.combine = \"nearest\"");
+  scene.surfaces.insert(scene.surfaces.end(), lower.begin(), lower.end());
 }
 
 std::optional<Coating> read_coating(SceneReader& reader, const std::string& table) {
@@ -69,14 +85,16 @@ std::optional<Coating> read_coating(SceneReader& reader, const std::string& tabl
 
 Material read_material(SceneReader& reader, const std::string& body) {
   const std::optional<Coating> coating = read_coating(reader, body + ".layer");
+  const std::optional<double> yield_stress = reader.find_number(body + ".yield_stress");
   if (reader.flag_or(body + ".rigid", false)) {
     for (const char* key : {".young_modulus", ".poisson_ratio"}) {
       if (reader.has(body + key))
         reader.fail(body + ".rigid", "true", fmt::format("no {}{} with it", body, key));
     }
-    return {std::numeric_limits<double>::infinity(), 0.0, coating};
+    return {std::numeric_limits<double>::infinity(), 0.0, coating, yield_stress};
   }
-  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio"), coating};
+  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio"), coating,
+          yield_stress};
 }
 
 Layer read_layer(SceneReader& reader) {
@@ -116,7 +134,10 @@ FrictionLaw read_friction(SceneReader& reader) {
   if (!tresca) law.coefficient = reader.number("contact.friction");
   if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
     law.shear_strength = reader.number("contact.shear_strength");
-  if (law.kind == FrictionKind::power) law.exponent = reader.number("contact.friction_exponent");
+  if (law.kind == FrictionKind::power) {  // its coefficient is in Pa^(1 - exponent)
+    law.exponent = reader.number("contact.friction_exponent");
+    law.coefficient = reader.in_si(law.coefficient, -2.0 * (1.0 - law.exponent));
+  }
   if (!reader.text_or("contact.friction_map", "").empty()) law.map = reader.path("contact.friction_map");
   return law;
 }
@@ -158,6 +179,7 @@ void read_translation(SceneReader& reader, const std::string& table, Step& step)
 struct ReadStep {
   Step step = {};
   std::optional<TorsionLoad> torsion = {};
+  std::size_t points = 1;
 };
 
 void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
@@ -171,9 +193,28 @@ void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
   read_translation(reader, table, step);
 }
 
+/// The loads before the first step, which brings its normal load at once.
+Step unloaded(const Step& step) {
+  Step before;
+  before.normal = step.normal;
+  before.torsion = std::visit([](auto load) -> TorsionLoad { return decltype(load){}; }, step.torsion);
+  return before;
+}
+
+/// Between a moment and a twist, or a force and a displacement, nothing can be interpolated.
+void require_same_loads(SceneReader& reader, const Step& before, const Step& step) {
+  const bool torsion = before.torsion.index() == step.torsion.index() || before.torsion == TorsionLoad();
+  const bool translation = before.displacement.has_value() == step.displacement.has_value() ||
+                           !(brings_translation(before) && brings_translation(step));
+  if (!torsion || !translation) {
+    reader.fail(step.key + ".points", "(after a step with a load of another kind)",
+                "points between loads of one kind, as from a twist to a twist");
+  }
+}
+
 /// The step of [load], or the steps of [[step]]: each starts from the loads of the step before, the first
 /// from [load].
-std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
+std::vector<Step> read_steps(SceneReader& reader, bool needs_normal, std::size_t& first_points) {
   ReadStep load;
   read_loads(reader, "load", load);
   load.step.inherited = {true, true, true};
@@ -186,11 +227,13 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
     ReadStep next = read.empty() ? load : read.back();
     read_loads(reader, fmt::format("step[{}]", i), next);
     next.step.name = reader.text_or(next.step.key + ".name", fmt::format("{}", i + 1));
+    next.points = static_cast<std::size_t>(reader.number_or(next.step.key + ".points", 1));
     read.push_back(next);
   }
   if (read.empty()) read.push_back(load);
+  first_points = read.front().points;
   std::vector<Step> steps;
-  for (auto& [step, torsion] : read) {
+  for (auto& [step, torsion, points] : read) {
     if (needs_normal && !step.normal) reader.number(step.key + ".normal");  // says what is missing
     const bool translated = step.displacement || step.force != std::array<double, 2>{};
     if (!torsion && count == 0 && !translated) {
@@ -199,7 +242,16 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
                   "load.displacement");
     }
     if (torsion) step.torsion = *torsion;
+    const Step before = steps.empty() ? unloaded(step) : steps.back();
+    if (points > 1) require_same_loads(reader, before, step);
+    for (std::size_t i = 1; i < points; ++i) {
+      steps.push_back(on_the_way(before, step, static_cast<double>(i) / static_cast<double>(points)));
+      steps.back().name = fmt::format("{} {}/{}", step.name, i, points);
+    }
     steps.push_back(step);
+    if (points > 1) steps.back().name = fmt::format("{0} {1}/{1}", step.name, points);
+    if (steps.size() > kMaxSteps)
+      reader.fail("step", fmt::format("{} steps", steps.size()), fmt::format("at most {}", kMaxSteps));
   }
   return steps;
 }
@@ -220,10 +272,36 @@ bool brings_translation(const Step& step) {
   return step.displacement || step.force != std::array<double, 2>{};
 }
 
+Step on_the_way(const Step& before, const Step& step, double part) {
+  Step at = step;
+  const auto mix = [part](double from, double to) { return from + part * (to - from); };
+  if (step.normal && before.normal) at.normal = mix(*before.normal, *step.normal);
+  std::visit(
+      [&](auto& load) {
+        const auto from = value_if<std::remove_cvref_t<decltype(load)>>(before.torsion);
+        load.value = mix(from.value_or(0.0), load.value);
+      },
+      at.torsion);
+  for (std::size_t i = 0; i < 2; ++i) {
+    at.force[i] = mix(before.force[i], step.force[i]);
+    if (step.displacement)
+      (*at.displacement)[i] =
+          mix(before.displacement ? (*before.displacement)[i] : 0.0, (*step.displacement)[i]);
+  }
+  return at;
+}
+
 Step step_of(const Scene& scene, std::size_t k) {
-  Step step = scene.steps[k % scene.steps.size()];
+  const std::size_t point = k % scene.steps.size();
+  Step step = scene.steps[point];
   if (k < scene.steps.size()) return step;
   const Step& last = scene.steps.back();
+  if (point + 1 < scene.first_points) {  // from the end of the last cycle
+    const Step end = step_of(scene, k + scene.first_points - 1 - point);
+    Step at = on_the_way(last, end, static_cast<double>(point + 1) / static_cast<double>(scene.first_points));
+    at.name = step.name;
+    return at;
+  }
   if (step.inherited.normal) step.normal = last.normal;
   if (step.inherited.torsion) step.torsion = last.torsion;
   if (step.inherited.translation) {
@@ -246,9 +324,8 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   Scene scene;
   scene.source = file;
   scene.name = reader.text_or("name", file.stem().string());
-  scene.surfaces = read_surfaces(reader);
-  if (scene.surfaces.size() > 1)
-    scene.combine = reader.choice_or("upper.combine", scene.combine, kCombinations);
+  reader.measure_in(reader.choice_or("units", 0, kUnitSets));
+  read_shapes(reader, scene);
   scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
@@ -260,9 +337,11 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
     scene.contact.pressure_file = reader.path("contact.pressure_file");
   scene.contact.coupling = reader.choice_or("contact.coupling", scene.contact.coupling, kCouplings);
 
-  scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file);
+  scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file, scene.first_points);
   if (scene.steps.size() > 1 || reader.has("cycles")) {
     scene.cycles = static_cast<int>(reader.number_or("cycles", scene.cycles, cycles_of(scene.steps.size())));
+    if (scene.cycles > 1 && scene.first_points > 1)
+      require_same_loads(reader, scene.steps.back(), scene.steps[scene.first_points - 1]);
   }
 
   scene.grid.cells = read_cells(reader, scene.surfaces);
@@ -283,6 +362,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
       reader.number_or("solver.rounding_seed", static_cast<double>(scene.solver.rounding_seed)));
   reader.reject_unknown();
   validate(scene, &reader);
+  scene.units = reader.units().words();
   return without_last_digits(std::move(scene));
 }
 

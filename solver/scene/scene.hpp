@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -26,7 +27,8 @@ struct Coating {
 struct Material {
   double young_modulus = 0.0;  ///< Pa; infinite: rigid
   double poisson_ratio = 0.0;
-  std::optional<Coating> coating = {};  ///< none: the body itself is touched
+  std::optional<Coating> coating = {};      ///< none: the body itself is touched
+  std::optional<double> yield_stress = {};  ///< Pa; a higher peak pressure is warned of
 };
 
 struct LawKind;
@@ -55,14 +57,17 @@ enum class ModelChoice { automatic, full, exact };
 /// The load that turns the upper body about the grid's origin. Signed: a history turns back.
 struct MomentRatio {
   double value = 0.0;  ///< M over the limit of this pressure and mesh
+  bool operator==(const MomentRatio&) const = default;
 };
 /// The moment itself.
 struct Moment {
   double value = 0.0;  ///< N m
+  bool operator==(const Moment&) const = default;
 };
 /// The rotation is imposed, and the moment follows.
 struct Twist {
   double value = 0.0;  ///< rad, since the first step
+  bool operator==(const Twist&) const = default;
 };
 using TorsionLoad = std::variant<MomentRatio, Moment, Twist>;
 
@@ -133,7 +138,7 @@ struct SolverSettings {
 struct Scene {
   std::filesystem::path source;  ///< the file it was read from
   std::string name;
-  std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one
+  std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one, then of the lower body
   Combine combine = Combine::sum;
   /// The indenter ends at the grid's edge, so its contact may reach that edge.
   bool ends_at_grid_edge = false;
@@ -143,9 +148,13 @@ struct Scene {
   ContactSettings contact;
   std::vector<Step> steps = std::vector<Step>(1);  ///< at least one
   int cycles = 1;                                  ///< repetitions of the steps
+  /// Steps at the beginning that are the points of one step: a later cycle begins them at its last step.
+  std::size_t first_points = 1;
   GridSettings grid;
   SolverSettings solver;
   std::vector<Omission> left_out = {};  ///< by without_last_digits()
+  /// The file's units for SI units, as {"m", "mm"}, in which texts show results. All members are in SI units.
+  std::map<std::string, std::string> units = {};
 };
 
 /// Whether a layer is bonded to a body.
@@ -153,6 +162,9 @@ bool is_coated(const Scene& scene);
 
 /// Whether the bodies are half-spaces that touch each other: without a layer between them or on them.
 bool is_bare(const Scene& scene);
+
+/// The loads when a part of a step's change is made.
+Step on_the_way(const Step& before, const Step& step, double part);
 
 /// The k-th step of the whole history, counted over all cycles.
 Step step_of(const Scene& scene, std::size_t k);

@@ -19,7 +19,7 @@ std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}
 /// A range that depends on another key: its words; the reader checks the numbers.
 Range depending(const std::string& words) { return {words, nullptr}; }
 
-/// The keys of [upper], or of each [[upper.shape]].
+/// The keys of a body's table that give its shape, or of each of its tables [[upper.shape]].
 void add_shape(SettingKeys& keys, const std::string& table) {
   const Surface surface;
   const std::string at = table + ".";
@@ -40,9 +40,12 @@ void add_shape(SettingKeys& keys, const std::string& table) {
       add(number.name, number.unit, kRequired, number.allowed, number.meaning, words);
     }
   };
-  add("shape", "", kRequired, one_of(shape_words()),
-      "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`.", {},
-      kWord);
+  const bool of_shape = table.ends_with(".shape");
+  add("shape", "", of_shape ? kRequired : "required; of `[lower]` a plane", one_of(shape_words()),
+      "The shape of the body's surface: this word, or tables `[[upper.shape]]`, `[[lower.shape]]`. The gap "
+      "is the "
+      "sum of both bodies' gaps.",
+      {}, kWord);
   add_numbers([](const ShapeNumber& number) { return number.own != nullptr; });
   add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
       "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
@@ -72,6 +75,8 @@ void add_body(SettingKeys& keys, const std::string& table) {
        "Whether the body is rigid: then it has neither of the next two keys. One body may be."},
       {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
       {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."},
+      {at + "yield_stress", kNumber, "Pa", "none", kPositive,
+       "Yield stress: a warning says where the peak pressure exceeds it. It changes no number."},
       {at + "layer.thickness", kNumber, "m", kRequired, kPositive,
        "Thickness of the layer that is bonded to the body."},
       {at + "layer.young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus of that layer."},
@@ -183,9 +188,13 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
 
 SettingKeys make_scene_keys() {
   const Scene scene;
-  SettingKeys keys{{"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
-                   {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
-                    "Repetitions of all steps; steps times cycles is limited."}};
+  SettingKeys keys{
+      {"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
+      {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
+       "Repetitions of all steps; steps times cycles is limited."},
+      {"units", kWord, "", word_of(kUnitSets, 0), one_of(kUnitSets),
+       "Units of all numbers of the scene: m, N and Pa, or mm, N and MPa, with N mm for moments. A "
+       "text with a unit, as in radius = \"10 mm\", is in its own unit."}};
   add_shape(keys, "upper");
   keys.push_back({"upper.combine", kWord, "", word_of(kCombinations, scene.combine), one_of(kCombinations),
                   "How several shapes make one surface: their gaps add up, or each point has the nearest. "
@@ -194,6 +203,8 @@ SettingKeys make_scene_keys() {
                   "Whether the body itself ends at the edge of the grid, so that its contact may reach it."});
   add_body(keys, "upper");
   add_shape(keys, "upper.shape");
+  add_shape(keys, "lower");
+  add_shape(keys, "lower.shape");
   add_body(keys, "lower");
   add_layer(keys);
   add_contact(keys, scene);
@@ -203,6 +214,9 @@ SettingKeys make_scene_keys() {
                   "Tables `[[step]]`: a history, whose steps are solved one after another."});
   keys.push_back(
       {"step.name", KeyType::text, "", "the step's number", kAny, "Names the step in the result."});
+  keys.push_back(
+      {"step.points", kNumber, "", "1", kPoints,
+       "Equal parts in which the step's loads are brought, each with results and fields as a step."});
   add_loads(keys, "step", true);
   add_grid_and_solver(keys, scene);
   return keys;

@@ -18,6 +18,8 @@ const Words<const LawKind*>& layer_words();
 inline const Words<Combine> kCombinations{{"sum", Combine::sum}, {"nearest", Combine::nearest}};
 /// Each in m.
 inline const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
+/// Sets of units by their length: its power of ten in m. Forces are in N.
+inline const Words<int> kUnitSets{{"m", 0}, {"mm", -3}};
 inline const Words<PressureModel> kPressureModels{{"solved", PressureModel::solved},
                                                   {"hertz", PressureModel::hertz},
                                                   {"hertz_averaged", PressureModel::hertz_averaged},
@@ -49,6 +51,7 @@ inline const Range kIterations = whole(1, 1e9);
 inline const Range kRoundingSeeds = whole(0, 1e9);
 /// The error of a path goes like one over the parts, and the time of a solve like the parts.
 inline const Range kSubsteps = whole(1, 4096);
+inline const Range kPoints = whole(1, 10'000);
 inline const Range kThreads = whole(0, 1024);
 /// Powers of a cell's size stay within double precision.
 inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};

@@ -34,7 +34,7 @@ struct HeightMap {
   Eigen::ArrayXXd heights{};        ///< m, the least one 0; see with_heights
 };
 
-/// One shape of the indenter; the members that it uses are set. Lengths in m, or any one unit.
+/// One shape of a body; the members that it uses are set. Lengths in m, or any one unit.
 struct Surface {
   Shape shape = Shape::sphere;
   double radius = 0.0;         ///< sphere; flat_punch
@@ -50,6 +50,7 @@ struct Surface {
   Roughness roughness{};
   std::array<double, 2> at{};  ///< position of its axis; a height map and a rough surface have none
   double angle = 0.0;          ///< rad, from x1 to its first axis, positive towards x2
+  std::string key = {};        ///< of its table in the scene file; empty: a program made it
 };
 
 std::string to_string(Shape shape);

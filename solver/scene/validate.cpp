@@ -51,7 +51,8 @@ class Validation {
              fmt::format("from 1 to {}", kMaxShapes));
     }
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      check_surface(surfaces.size() == 1 ? "upper" : fmt::format("upper.shape[{}]", i), surfaces[i]);
+      const std::string made = surfaces.size() == 1 ? "upper" : fmt::format("upper.shape[{}]", i);
+      check_surface(surfaces[i].key.empty() ? made : surfaces[i].key, surfaces[i]);
     }
   }
 
@@ -80,6 +81,7 @@ class Validation {
       refuse(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
     }
     require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
+    if (material.yield_stress) require(body + ".yield_stress", *material.yield_stress, kPositive);
     if (!material.coating) return;
     require(body + ".layer.thickness", material.coating->thickness, kPositive);
     require(body + ".layer.young_modulus", material.coating->young_modulus, kPositive);

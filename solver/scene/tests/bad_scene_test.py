@@ -47,7 +47,7 @@ BAD = [
     ("[contact]", '"frict[ion" = 1\n[contact]', [], "frict[ion", "unknown key"),
     ("friction = 0.1", "", [], "contact.friction", "(missing)", "a number"),
     ('shape = "sphere"', "", [], "upper.shape", "(missing)"),
-    ("normal = 1000.0", 'normal = "1 kN"', [], "scene.toml:15", "load.normal", "1 kN", "a number"),
+    ("normal = 1000.0", 'normal = "1 stone"', [], "scene.toml:15", "load.normal", "1 stone", "a number", "N, mN, kN"),
     ('shape = "sphere"', "shape = 3", [], "scene.toml:3", "upper.shape = 3", "a string"),
     ("radius = 0.018", "radius = true", [], "scene.toml:4", "upper.radius = true", "a number"),
     ("normal = 1000.0", "normal = -1000.0", [], "scene.toml:15", "load.normal = -1000:", "positive and finite"),
