@@ -22,8 +22,8 @@ StepRecord make_step(const solver::Scene& scene, const solver::Solution& solutio
 SolveRecord make_incomplete(const std::string& scene_name, const std::string& why,
                             std::vector<StepRecord> steps);
 
-/// Reasons to doubt that a scene is the one that was meant, or that the theory holds for it: from the sizes of
-/// slopes, pressures and twists in its result. They change no status and no verdict.
+/// Reasons to doubt that a scene is the one that was meant, or that the theory holds for it: from the sizes
+/// of slopes, pressures and twists in its result. They change no status and no verdict.
 std::vector<std::string> doubts_about(const solver::Scene& scene, const SolveRecord& record);
 
 /// Whether the scene has several steps, solved or not.
