@@ -53,7 +53,7 @@ std::optional<double> number_of(const toml::node& node) {
 }
 
 /// Powers of a length in an SI unit: the other parts of the unit are forces.
-const std::map<std::string, int> kLengthPowers{{"m", 1}, {"Pa", -2}, {"N m", 1}, {"m/Pa", 3}};
+constexpr std::pair<std::string_view, int> kLengthPowers[]{{"m", 1}, {"Pa", -2}, {"N m", 1}, {"m/Pa", 3}};
 
 /// The allowed numbers; after a text such as .5 or 5., which shells and C accept, also how TOML writes it.
 std::string with_point(const toml::node& node, const std::string& allowed) {
@@ -121,8 +121,9 @@ struct SceneReader::ReadKeys {
     const std::string unit = found == keys.end() ? "" : found->second.unit;
     if (const auto* const text = node.as_string()) return units.read(text->get(), unit);
     const auto value = number_of(node);
-    const auto power = kLengthPowers.find(unit);
-    if (!value || length_power == 0 || power == kLengthPowers.end()) return value;
+    const auto* const power =
+        std::ranges::find(kLengthPowers, unit, &std::pair<std::string_view, int>::first);
+    if (!value || length_power == 0 || power == std::end(kLengthPowers)) return value;
     return parse_number(fmt::format("{}", *value), length_power * power->second);
   }
   /// What a number's key allows, with its units and with a hint at TOML's form.
