@@ -79,7 +79,8 @@ class ProgramTest(unittest.TestCase):
         return text
 
     def result(self, *words, code=0):
-        return json.loads(self.run_program(*words, "--json", "-", code=code))
+        text = self.run_program(*words, "--json", "-", code=code)
+        return json.loads(text[text.index("{"):])  # after warnings
 
     def text_and_result(self, *words, code=0):
         """Both of one run."""
