@@ -11,6 +11,7 @@ from loop_requests import SCENES, request_of
 from slipstick import exact
 from slipstick.meshes import answer, measures
 from slipstick.meshes.curvature import of_sphere
+from slipstick.meshes.read import read
 
 measures._PLACES = 40  # at which displacements are summed, for speed
 PAPER = slipstick.solve(SCENES / "paper.toml", solver__model="exact")
@@ -50,6 +51,15 @@ def on_mesh(contact, mesh="polar", kind="faces", axes=(RADIUS, RADIUS)):
     return drawn.put(contact, MESHES[mesh], kind, axes)
 
 
+def table_of_forces(field, folder):
+    """A table of the nodes with a force; nothing says how large their areas are."""
+    loaded = field.pressure > 0
+    rows = np.column_stack([field.points, field.area[:, None] * np.column_stack([field.traction, field.pressure])])[loaded]
+    file = folder / "forces.csv"
+    np.savetxt(file, rows, delimiter=",", header="x1 [m],x2 [m],f1 [N],f2 [N],fn [N]", comments="")
+    return file
+
+
 class RightFields(unittest.TestCase):
     def good(self, field, **options):
         result = judged(field, **options)
@@ -76,6 +86,11 @@ class RightFields(unittest.TestCase):
                 judgement = judged(field, twist=(1 + part * growth) * twist_of(0.9))
                 twist = next(each for each in judgement["judged"] if each["quantity"] == "twist")
                 self.assertAlmostEqual(twist["value"], off, 4)
+
+    def test_nodal_forces_without_areas(self):
+        for mesh in ("polar", "jittered"):
+            with self.subTest(mesh=mesh), tempfile.TemporaryDirectory() as folder:
+                self.good(read(table_of_forces(on_mesh(sphere(), mesh, "forces"), Path(folder))), twist=twist_of(0.9))
 
     def test_solved_tractions(self):
         contact, twist = ELLIPSE
@@ -110,19 +125,35 @@ class WrongFields(unittest.TestCase):
             with self.subTest(factor):
                 self.bad(field, words, twist=factor * twist_of(0.9))
 
+    def test_nodal_forces_without_areas(self):
+        forces = on_mesh(sphere(), "jittered", "forces")
+        kept = np.random.default_rng(3).random(len(forces.points)) > 0.1
+        lost = forces.replaced(points=forces.points[kept], pressure=forces.pressure[kept], traction=forces.traction[kept],
+                               area=forces.area[kept], vertices=None, faces=[])
+        with tempfile.TemporaryDirectory() as folder:
+            self.bad(read(table_of_forces(lost, Path(folder))), "most rows have the right pressure")
+            self.bad(read(table_of_forces(forces, Path(folder))), "the twist is 3 % too low", twist=0.97 * twist_of(0.9))
+
     def test_changed_fields(self):
         field = on_mesh(sphere(), "polar", "nodes")
         x, p, q = field.points, field.pressure, field.traction
         r = np.hypot(*x.T)
         weak = 0.3 * (FRICTION * p - np.hypot(*q.T)) / np.maximum(r, 1e-12)
         waves = 0.2 * np.hypot(*q.T).max() * np.stack([np.cos(7 * x[:, 0] / RADIUS), np.sin(8 * x[:, 1] / RADIUS + 1)], axis=1)
+        leftovers = 0.1 * np.hypot(*q.T).max() * np.sin(x / RADIUS * [14, 15])  # without a force or a moment
         left = x[:, 0] < 0.6 * RADIUS
         for name, changes, words in (
                 ("mirrored", {"traction": q * [-1, 1]}, "q1 has the wrong sign"),
                 ("exchanged", {"traction": q[:, ::-1]}, "tangential basis"),
                 ("pressed with friction", {"traction": q + weak[:, None] * x}, "friction was on while pressing"),
+                ("other centre", {"points": x + [0.1 * RADIUS, 0], "vertices": x + [0.1 * RADIUS, 0]}, "name the body's axis"),
+                ("no second component", {"traction": q * [1, 0]}, "q2 is missing"),
+                ("unit of a component", {"traction": q * [1, 1e-3]}, "q2 is in another unit than q1: it is 0.001 times as large"),
+                ("mean pressure", {"traction": 0.7 * q / np.maximum(p, 1e7)[:, None] * 1.3e9 * (r > 0.3 * RADIUS)[:, None]
+                                   + 0.7 * q * (r <= 0.3 * RADIUS)[:, None]}, "friction is the same everywhere"),
                 ("units", {"pressure": 1e-3 * p}, "the normal load is 100 % too low"),
                 ("not converged", {"traction": q + waves * (p > 0)[:, None]}, "the tractions are"),
+                ("leftovers", {"traction": q + leftovers * (p > 0)[:, None]}, "an iteration that ended early"),
                 ("rows lost", {"pressure": p * left, "traction": q * left[:, None]}, "rows are missing")):
             with self.subTest(name):
                 self.bad(field.replaced(**changes), words)

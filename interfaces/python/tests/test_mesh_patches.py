@@ -5,7 +5,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from slipstick.meshes.field import ContactField
-from slipstick.meshes.patches import areas_around, patches_of, put_on
+from slipstick.meshes.patches import areas_around, patches_of, put_on, with_edge
 
 
 def square(n):
@@ -19,7 +19,8 @@ def square(n):
 def patches(kind, nodes, faces):
     points = nodes if kind == "nodes" else nodes[faces].mean(axis=1)
     ones = np.ones(len(points))
-    return patches_of(ContactField(kind, points, ones, np.zeros((len(points), 2)), vertices=nodes, faces=[faces]), ones)
+    return patches_of(ContactField(kind, points, ones, np.zeros((len(points), 2)), vertices=nodes, faces=[faces]),
+                      lambda x: np.ones((len(x), 3)))
 
 
 class Patches(unittest.TestCase):
@@ -33,6 +34,37 @@ class Patches(unittest.TestCase):
         hull = ConvexHull(scattered).volume
         self.assertLess(areas_around(scattered).sum(), hull * (1 + 1e-12))
         self.assertGreater(areas_around(scattered).sum(), 0.95 * hull)  # without slivers along the hull
+
+    def test_a_table_of_the_rows_in_contact_gets_the_edge_of_the_mesh(self):
+        nodes, _ = square(20)
+        loaded = np.hypot(*nodes.T) < 0.7
+        ones = np.ones(loaded.sum())
+        field = with_edge(ContactField("nodes", nodes[loaded], ones, np.zeros((len(ones), 2)), slip=np.ones((len(ones), 2))))
+        self.assertEqual((len(field.points) - field.added, field.slip.shape), (len(ones), field.points.shape))
+        self.assertFalse(field.pressure[-field.added:].any())
+        edge = field.points[-field.added:]
+        self.assertGreater(np.hypot(*edge.T).min(), 0.7)
+        distance = np.linalg.norm(edge[:, None] - nodes[loaded], axis=2).min(axis=1)
+        np.testing.assert_array_less(abs(distance - 0.1), 0.05)  # a face away
+        areas = areas_around(field.points)[:len(ones)]
+        np.testing.assert_allclose(areas, 0.01, rtol=0.35)
+        self.assertAlmostEqual(areas.mean(), 0.01, delta=2e-4)
+        whole = ContactField("nodes", nodes, loaded.astype(float), np.zeros((len(nodes), 2)))
+        self.assertIs(with_edge(whole), whole)
+
+    def test_a_hole_of_the_contact_is_not_bridged(self):
+        angle = 2 * np.pi * np.arange(40) / 40
+        radii = np.linspace(0.3, 1, 15)
+        points = (radii[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
+        ones = np.ones(len(points))
+
+        def ring(x):
+            return np.repeat((np.hypot(*x.T) >= 0.299).astype(float)[:, None], 3, axis=1)
+
+        on = patches_of(ContactField("nodes", points, ones, np.zeros((len(points), 2))), ring)
+        polygon = 20 * np.sin(2 * np.pi / 40)  # area of the one with 40 corners on the unit circle
+        self.assertAlmostEqual(on.areas.sum(), polygon * (1 - 0.3**2), delta=2e-3)
+        self.assertAlmostEqual(on.weights.sum(), polygon * (1 - 0.3**2), delta=2e-3)
 
     def test_linear_fields_are_kept_by_every_way(self):
         nodes, quads = square(5)

@@ -19,8 +19,15 @@ from .verdict import Examined, Judged, percent
 _EXPLAINS = 0.35
 #: A mesh of bodies around a fine contact may turn this much further than half-spaces, and have this much shear along the radius.
 _OF_BODIES = 0.02
+#: Rings of the contact over which values are averaged; and the part of a shear that friction while pressing has all around the axis:
+#: other mistakes leave cosines of the angle.
+_RINGS, _ALL_ROUND, _NO_SYMMETRY = 8, 0.7, 0.5
 #: Ratios of moments and twists count as equal up to this difference.
 _SAME_RATIO = 0.01
+#: Rows with less than this part of the largest pressure show no law of friction; and the fewest rows that show one.
+_AT_RIM, _FEWEST = 0.1, 8
+#: Powers of the pressure count as 0 up to this, and as 1 up to half of it.
+_SAME_POWER = 0.2
 #: Parts of the way from this moment to the limit, from which a history may have returned.
 _TOPS = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 0.98])
 #: Compliances of springs that are tried, over the compliance a/G* of the half-spaces.
@@ -42,13 +49,13 @@ def causes_of(examined: Examined, request: Request, solve: Solve) -> list[str]:
 
     if no_friction := search(_no_friction):
         return no_friction
-    basis, kernel = search(_other_basis), search(_other_twist) or search(_other_kernel)
-    pressed = [] if basis or kernel else search(_pressed_with_friction)  # either makes a shear along the radius, too
-    found = basis + pressed + search(_missing_rows, _other_units, _other_contact, _extrapolated, _other_friction, _other_moment,
-                                     _lost_history) + kernel
-    if not found:
-        found = search(_directions)
-    return found
+    if given := search(_other_basis, _other_component, _shifted):  # each makes all other numbers wrong, too
+        return given
+    kernel = search(_other_twist) or search(_other_kernel)
+    pressed = [] if kernel else search(_pressed_with_friction)  # a kernel makes a shear along the radius, too
+    found = pressed + search(_missing_rows, _other_units, _other_contact, _extrapolated, _other_friction, _other_moment,
+                             _lost_history) + kernel
+    return found or search(_unfinished) or search(_directions)
 
 
 def _distance(examined: Examined, fields: Array, shear: Optional[Array] = None) -> float:
@@ -89,17 +96,62 @@ def _other_basis(examined: Examined, request: Request, solve: Solve, wrong: set[
         yield f"the shear is given in another tangential basis: {best}"
 
 
+def _other_component(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """One component of the shear that is missing or in another unit."""
+    if "tractions" not in wrong:
+        return
+    shear, wanted = examined.values[:, 1:], examined.judge.reference[:, 1:]
+    for k in range(2):
+        weights = examined.judge.weights * np.abs(wanted[:, k])
+        if not weights.any() or not np.abs(wanted[:, 1 - k]).any():
+            return
+        if not shear[:, k].any():
+            yield f"q{k + 1} is missing"
+            continue
+        ratio = (weights @ (shear[:, k] * np.sign(wanted[:, k]))) / (weights @ np.abs(wanted[:, k]))
+        unit = round(np.log10(max(abs(ratio), 1e-30)) / 3)
+        if unit and _explained(examined, _distance(examined, examined.judge.reference, shear * np.where(np.arange(2) == k, 10.0**(-3 * unit), 1))):
+            yield f"q{k + 1} is in another unit than q{2 - k}: it is {10.0**(3 * unit):g} times as large"
+
+
+def _shifted(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """A field whose origin is not the body's axis."""
+    judge = examined.judge
+    load = judge.weights * examined.values[:, 0]
+    shift = load @ judge.x / load.sum() - (judge.weights * judge.reference[:, 0]) @ judge.x / (judge.weights @ judge.reference[:, 0])
+    pressure = _number(examined, "pressure")
+    if pressure.holds or "normal_load" in wrong:
+        return
+    moved = examined.right.fields(examined.patches.points - shift)
+    off = judge.weights @ np.abs(examined.values[:, 0] - moved[:, 0]) / (judge.weights @ judge.reference[:, 0])
+    if off < _EXPLAINS * pressure.value:
+        yield (f"the field's contact is centred at x1 = {examined.right.centre[0] + shift[0]:.3g}, x2 = "
+               f"{examined.right.centre[1] + shift[1]:.3g} m: name the body's axis, as --read-as centre=X1,X2")
+
+
 def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     radial = examined.number("radial_shear")
     if radial is None or radial.holds or radial.value < _OF_BODIES:
         return
-    outward = examined.judge.x / np.maximum(np.hypot(*examined.judge.x.T), 1e-300)[:, None]
+    radius = np.hypot(*examined.judge.x.T)
+    outward = examined.judge.x / np.maximum(radius, 1e-300)[:, None]
     shear = examined.values[:, 1:]
+    if _part_all_round(examined, radius, np.sum(shear * outward, axis=1)) < _ALL_ROUND:
+        return
     without = shear - np.sum(shear * outward, axis=1)[:, None] * outward
     tractions = _number(examined, "tractions")
     left = _distance(examined, examined.judge.reference, without)
     if radial.value > 2 * radial.allowed or left < max(2 * _EXPLAINS * tractions.value, tractions.allowed):
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
+
+
+def _part_all_round(examined: Examined, radius: Array, values: Array) -> float:
+    """The part of values (n) that is the same all around the axis: the sum of the means of rings over the sum of all sizes."""
+    weights, edge = examined.judge.weights, examined.right.contact_radius
+    ring = np.minimum((_RINGS * radius / edge).astype(int), _RINGS)
+    means = np.bincount(ring, weights * values, minlength=_RINGS + 1)
+    total = weights @ np.abs(values)
+    return float(np.abs(means).sum() / total) if total > 0 else 0.0
 
 
 def _extrapolated(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
@@ -117,6 +169,11 @@ def _missing_rows(examined: Examined, request: Request, solve: Solve, wrong: set
     load, pressure, judge = _number(examined, "normal_load"), _number(examined, "pressure"), examined.judge
     if "coverage" in wrong:
         yield f"rows are missing: {percent(_number(examined, 'coverage').value)} of the contact has none"
+        return
+    given = (examined.values[:, 0] > 0) & (judge.reference[:, 0] > 0)
+    usual = np.median(examined.values[given, 0] / judge.reference[given, 0]) - 1
+    if load.value < 0 and not load.holds and abs(usual) < _EXPLAINS**2 * abs(load.value) and "coverage" not in wrong:
+        yield f"rows are missing: most rows have the right pressure, but {percent(load.value)} of the load is not given"
         return
     given = examined.values[:, 0] > 0
     off = judge.weights[given] @ np.abs(examined.values[given, 0] - judge.reference[given, 0])
@@ -160,11 +217,16 @@ def _other_friction(examined: Examined, request: Request, solve: Solve, wrong: s
     elif high - low < _EXPLAINS * abs(friction.value) + friction.right:
         yield f"the friction coefficient is {coefficient * (1 + friction.value):.4g} in place of {coefficient:g}"
     else:
-        rows = judge.slips & (examined.values[:, 0] > 0)
+        rows = np.flatnonzero(judge.slips & (examined.values[:, 0] > _AT_RIM * examined.values[:, 0].max()))
+        rows = rows[np.argsort(examined.values[rows, 0])[:max(_FEWEST, len(rows) // 2)]]  # near the rim, where any law slips
         pressure, shear = np.log(examined.values[rows, 0]), np.log(np.maximum(np.hypot(*examined.values[rows, 1:].T), 1e-300))
         power, at_one = np.polyfit(pressure, shear, 1)
-        if abs(power - 1) > 0.1 and np.std(shear - power * pressure - at_one) < _EXPLAINS * np.std(shear - pressure):
-            yield f"the shear follows the pressure to the power {power:.2g}: another friction law, or a mean pressure in it"
+        if abs(power - 1) < _SAME_POWER / 2 or np.std(shear - power * pressure - at_one) > _EXPLAINS * np.std(shear - pressure):
+            return
+        if abs(power) < _SAME_POWER:
+            yield f"friction is the same everywhere, |q| = {np.exp(np.mean(shear)):.3g} Pa: that of a mean pressure, or Tresca's law"
+        else:
+            yield f"the shear follows the pressure to the power {power:.2g}: another friction law"
 
 
 def _other_moment(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
@@ -245,25 +307,33 @@ def _with_soft_penalty(examined: Examined, request: Request, solve: Solve) -> tu
 def _other_kernel(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     """Tries wrong kernels, and springs: with the kernel that a solver has its stick area moves rigidly, by the twist that it reports."""
     motion, scatter, twist = examined.motion, examined.number("stick_motion"), examined.number("twist")
-    if motion is None or scatter is None or not wrong & {"stick_motion", "twist"}:
+    if motion is None or scatter is None or not wrong & {"stick_motion", "twist", "slip_direction"}:
         return
     judge = examined.judge
     kernels = judge.kernels([examined.values], KERNELS)[0]
-    motions = {name: judge.rigid(kernels, kernels.displacement(other, **mistake))
-               for name, (other, mistake) in _hypotheses(examined, request, kernels).items()}
+    displacements = {name: kernels.displacement(other, **mistake) for name, (other, mistake) in _hypotheses(examined, request, kernels).items()}
+    motions = {name: judge.rigid(kernels, displacement) for name, displacement in displacements.items()}
+    angle = examined.number("slip_direction")
     reported = None if twist is None else examined.reported_of_half_spaces
 
     def off(other: Motion) -> float:
         return 0.0 if reported is None else abs(reported / other.twist - 1)
 
+    def turned(name: str) -> float:
+        found = judge.slip_angle(kernels, motions[name], displacements[name])
+        return 0.0 if found is None else found[0]
+
     allowed = 0.0 if twist is None else twist.allowed
     limit = _EXPLAINS * abs(scatter.value) if reported is None else max(_EXPLAINS * abs(scatter.value), scatter.allowed)
+    if angle is not None and not angle.holds and scatter.holds:  # the stick area hardly shows the kernel, but slip does
+        limit = scatter.allowed
+        motions = {name: other for name, other in motions.items() if turned(name) < _EXPLAINS * angle.value}
     fitting = {name: other for name, other in motions.items() if other.scatter <= limit and off(other) <= allowed}
-    if not fitting or (scatter.holds and off(motion) <= allowed):
+    if not fitting or (scatter.holds and off(motion) <= allowed and not (angle and not angle.holds)):
         return
     if reported is None:
-        best = min(other.scatter for other in fitting.values())
-        yield " or ".join(name for name, other in fitting.items() if other.scatter <= 1.5 * best)
+        measure = {name: turned(name) if scatter.holds else other.scatter for name, other in fitting.items()}
+        yield " or ".join(name for name in fitting if measure[name] <= 1.5 * min(measure.values()))
     else:  # several kernels may leave the stick area rigid, at different twists; springs are fitted to the reported one
         yield min(fitting, key=lambda name: (name.startswith(_SOFT), not name.startswith(_COUPLING), off(fitting[name])))
 
@@ -311,6 +381,18 @@ def _fitted_spring(examined: Examined, kernels: Kernels) -> float:
     scale = [np.abs(column).max() for column in columns]
     solution = np.linalg.lstsq(np.column_stack([column / size for column, size in zip(columns, scale)]), wanted, rcond=None)[0]
     return float(solution[2] / scale[2])
+
+
+def _unfinished(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
+    """Errors that carry no load and have no symmetry."""
+    if not examined.right.radial or not wrong & {"tractions", "stick_motion"} or wrong & {"normal_load", "pressure", "contact_radius", "moment", "force"}:
+        return
+    radius = np.hypot(*examined.judge.x.T)
+    outward = examined.judge.x / np.maximum(radius, 1e-300)[:, None]
+    error = examined.values[:, 1:] - examined.judge.reference[:, 1:]
+    around = error[:, 1] * outward[:, 0] - error[:, 0] * outward[:, 1]
+    if max(_part_all_round(examined, radius, each) for each in (around, np.sum(error * outward, axis=1))) < _NO_SYMMETRY:
+        yield "an iteration that ended early: the loads hold, and the errors of the tractions have no symmetry about the axis"
 
 
 def _directions(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:

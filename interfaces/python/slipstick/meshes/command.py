@@ -38,7 +38,7 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     name = examined.field.name if request["field"].endswith(".contact") else request["field"]
     choices = examined.field.said + notes
     result = {"name": request["name"], "field": name, "verdict": "good" if good else "bad", "why": why,
-              "causes": causes, "choices": choices, "kind": examined.field.kind, "rows": len(examined.field.points),
+              "causes": causes, "choices": choices, "kind": examined.field.kind, "rows": len(examined.field.points) - examined.field.added,
               "faces_across": examined.across, "right_answer": examined.right.source, **_numbers(examined),
               "judged": [{"quantity": item.quantity, **_or_reason("value", item.value, "not a number"), "allowed": item.allowed,
                           "mesh": item.right, "holds": bool(item.holds)} for item in examined.judged]}
@@ -62,7 +62,7 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     springs = _springs(request, field, right)
     across = 2 * np.sqrt(max(1, np.count_nonzero(field.pressure)) / np.pi)  # rows across the contact
     if request["exact"] is None or springs:
-        right = _right(request, springs, int(np.clip(_FINER * across, _LEAST, _MOST)))
+        right = _right(request, {**springs, **_own_moment(request, springs)}, int(np.clip(_FINER * across, _LEAST, _MOST)))
     others = {"a solve on cells as large as the faces": _right({**request, "exact": None}, springs, int(np.clip(across, 12, _MOST)))}
     law = Law(request["friction"])
     single = request["steps"] == 1 and request["half_spaces"]
@@ -137,6 +137,12 @@ def _springs(request: Mapping[str, Any], field: ContactField, right: Right) -> d
         return {}
     return {"layer.kind": "winkler", "layer.normal_compliance": 1 / stiffness if stiffness else 0.0,
             "layer.tangential_compliance": 1 / slope if slope else 0.0, "grid.extent": _extent(field, right)}
+
+
+def _own_moment(request: Mapping[str, Any], springs: Mapping[str, Any]) -> dict[str, Any]:
+    """The key of the moment without springs, which change its limit; none where the scene gives no part of a limit."""
+    part_of_limit = springs and request["exact"] is not None and "load.moment_ratio" in (request["torsion"] or {})
+    return {"load.moment": request["exact"]["moment"]} if part_of_limit else {}
 
 
 def _extent(field: ContactField, right: Right) -> list[float]:

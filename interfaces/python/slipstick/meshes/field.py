@@ -29,7 +29,8 @@ class ContactField:
     triangulation of the points. vertices (m, 2) m and faces: the mesh, where the file has one; each array of `faces` holds faces of
     one type, as rows of indices into the vertices: 3 or 6 for triangles, 4, 8 or 9 for quadrilaterals, in VTK's order of nodes. For
     kinds "nodes" and "forces" the vertices are the points; for "faces" the rows are the faces, in the order of the arrays.
-    slip (n, 2) m: of the upper body over the lower one. gap (n) m. said: the choices that the reader made, one sentence each.
+    slip (n, 2) m: of the upper body over the lower one. gap (n) m. said: the choices that the reader made, one sentence each. added:
+    rows at the end that are not the source's.
     """
 
     kind: str
@@ -43,6 +44,7 @@ class ContactField:
     gap: Optional[Array] = None
     name: str = "the field"
     said: list[str] = field(default_factory=list)
+    added: int = 0
 
     def replaced(self, **changes: Any) -> ContactField:
         """A copy with other arrays."""
@@ -53,12 +55,12 @@ class ContactField:
         arrays = {name: value for name, value in self.__dict__.items() if isinstance(value, np.ndarray)}
         faces = {f"faces{k}": array for k, array in enumerate(self.faces)}
         with file.open("wb") as stream:
-            np.savez(stream, texts=json.dumps([self.kind, self.name, self.said]), **arrays, **faces)
+            np.savez(stream, texts=json.dumps([self.kind, self.name, self.said, self.added]), **arrays, **faces)
 
     @classmethod
     def load(cls, file: Path) -> ContactField:
         with np.load(file) as data:
             arrays = dict(data)
-        kind, name, said = json.loads(str(arrays.pop("texts")))
+        kind, name, said, added = json.loads(str(arrays.pop("texts")))
         faces = [arrays.pop(key) for key in sorted(arrays) if key.startswith("faces")]
-        return cls(kind=kind, name=name, said=said, faces=faces, **arrays)
+        return cls(kind=kind, name=name, said=said, added=added, faces=faces, **arrays)

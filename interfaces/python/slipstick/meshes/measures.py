@@ -172,12 +172,11 @@ class Judge:
         off, size = (np.sum(weights[:, None]**2 * part**2) for part in (u - rigid, rigid))
         return Motion(motion.twist, motion.displacement, float(np.sqrt(off / size)) if size > 0 else np.inf)
 
-    def slip_angle(self, kernels: Kernels, motion: Motion) -> Optional[tuple[float, float]]:
+    def slip_angle(self, kernels: Kernels, motion: Motion, displacement: Array) -> Optional[tuple[float, float]]:
         """The mean angle between slip and traction, weighted with the slip, degrees; and the angle, degrees, by which slip may be off
         where displacements are as uncertain as the stick area's. None: hardly any row slips."""
-        assert self.bodies is not None
         rows = ~kernels.sticks
-        slip = motion.at(kernels.places[rows]) - kernels.displacement(self.bodies)[rows]
+        slip = motion.at(kernels.places[rows]) - displacement[rows]
         weights = kernels.weights[rows] * np.hypot(slip[:, 0], slip[:, 1])
         if rows.sum() < _FEWEST or not weights.sum() > 0:
             return None
@@ -220,14 +219,14 @@ class Judge:
             r = np.maximum(np.hypot(*self.x.T), 1e-300)
             found["radial_shear"] = float(w @ np.abs(np.sum(q * self.x, axis=1) / r) / carried)
         motion = None if kernels is None else self.motion(kernels)
-        if motion is not None and kernels is not None:
+        if motion is not None and kernels is not None and self.bodies is not None:
             if right.twist:
                 found["twist_of_tractions"] = motion.twist / right.twist - 1
             if right.displacement.any():
                 found["displacement_of_tractions"] = float(
                     np.hypot(*(motion.displacement - right.displacement)) / np.hypot(*right.displacement))
             found["stick_motion"] = motion.scatter
-            angle = self.slip_angle(kernels, motion)
+            angle = self.slip_angle(kernels, motion, kernels.displacement(self.bodies))
             if angle is not None:
                 found["slip_direction"], found["unsure_direction"] = angle
         return found

@@ -8,14 +8,19 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, KDTree
 
 from .displacement import triangles_of
 from .field import Array, ContactField, Indices
 
+#: Pressure, q1 and q2 (n, 3), Pa, at points (n, 2), m.
+Fields = Callable[[Array], Array]
+
 #: A triangle of a triangulation crosses a gap between parts of the contact where its longest edge is longer than this many times the
 #: shorter ones at its corners.
 _GAP = 5.0
+#: A triangle may bridge a hole where its longest edge is longer than this many times those of its neighbours.
+_BRIDGE = 1.5
 #: Four points are on a circle if the cotangents of two opposite angles add up to less than this.
 _ON_CIRCLE = 1e-4
 #: Each triangle is divided into the square of this number of equal ones, at whose centres integrals take their values.
@@ -41,56 +46,99 @@ class Patches:
         return self.shares * _areas(self.corners)
 
 
-def patches_of(field: ContactField, right: Array) -> Patches:
+def patches_of(field: ContactField, right: Fields) -> Patches:
     """The triangles of the field's faces, or a triangulation of its points where it has none; those on which the field or the right
-    pressure (n) at its points carries."""
+    answer carries at a corner. A triangulation does not bridge holes of the right contact."""
     if field.faces:
         assert field.vertices is not None
         triangles, face, shares, once = triangles_of(field.faces)
         corners = field.vertices[triangles]
         rows = np.repeat(face[:, None], 3, axis=1) if field.kind == "faces" else triangles
-        at_corners = np.repeat((shares * _areas(corners) / 3)[:, None], 3, axis=1)
     else:
-        rows = _triangulated(field.points)
-        corners, shares, once = field.points[rows], np.ones(len(rows)), np.ones(len(rows), dtype=bool)
-        at_corners = _corner_areas(corners, rows)
+        rows, shares, once = _triangulated(field.points)
+        corners = field.points[rows]
+        lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+        long = lengths > _BRIDGE * shortest_around(rows, lengths, len(field.points))[rows].min(axis=1)
+        stay = ~(long & (right(corners.mean(axis=1))[:, 0] == 0))
+        rows, shares, once, corners = rows[stay], shares[stay], once[stay], corners[stay]
     weights = field.area
     if weights is None:
-        weights = np.bincount(rows.ravel(), at_corners.ravel(), minlength=len(field.points))
-    carries = ((field.pressure != 0) | (right != 0))[rows].any(axis=1) & (_areas(corners) > 0)
-    # Without a mesh the shape functions behind nodal forces are unknown.
-    kind = "nodes" if field.kind == "forces" and not field.faces else field.kind
-    return Patches(kind, field.points, corners[carries], rows[carries], shares[carries], once[carries], weights)
+        weights = _shared(len(field.points), rows, shares * _areas(corners))
+    carries = ((field.pressure != 0) | (right(field.points)[:, 0] != 0))[rows].any(axis=1) & (_areas(corners) > 0)
+    return Patches(field.kind, field.points, corners[carries], rows[carries], shares[carries], once[carries], weights)
+
+
+def shortest_around(rows: Indices, lengths: Array, count: int) -> Array:
+    """The shortest of the triangles' lengths (t) around each point (count); 0 where there are none. Triangles that bridge a hole are
+    longer than the others at their corners."""
+    shortest = np.full(count, np.inf)
+    np.minimum.at(shortest, rows, lengths[:, None])
+    return np.where(np.isfinite(shortest), shortest, 0.0)
+
+
+def with_edge(field: ContactField) -> ContactField:
+    """The field of a table without faces, with points of no load where its outermost rows carry: a table often leaves out the nodes
+    that are out of contact, but the tractions between nodes end there. Each point mirrors a triangle at the edge."""
+    rows, _, once = _triangulated(field.points)
+    triangles = rows[once]
+    edges = np.concatenate([np.roll(triangles, -k, axis=1) for k in range(3)])  # a corner, and the edge that faces it
+    key = np.sort(edges[:, 1:], axis=1)
+    _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
+    opposite, start, end = edges[first[count == 1]].T
+    carries = (field.pressure[start] != 0) & (field.pressure[end] != 0)
+    x, a, b = (field.points[row[carries]] for row in (opposite, start, end))
+    if not len(x):
+        return field
+    along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
+    distance = np.sum((x - a) * np.stack([-along[:, 1], along[:, 0]], axis=1), axis=1)
+    mirrored = (a + b) / 2 - distance[:, None] * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    added = _apart(mirrored, field.points, np.minimum(np.abs(distance), np.linalg.norm(b - a, axis=1)))
+    rows = {name: np.concatenate([array, np.zeros((len(added), *array.shape[1:]))])
+            for name in ("pressure", "traction", "slip", "gap") if (array := getattr(field, name)) is not None}
+    return field.replaced(points=np.concatenate([field.points, added]), added=len(added), **rows,
+                          said=[*field.said, f"Edge: {len(added)} points without load are added beyond the rows."])
+
+
+def _apart(points: Array, others: Array, sizes: Array) -> Array:
+    """The points (n, 2) that are at least 0.6 of their size (n) from other ones, and from earlier ones of their own."""
+    free = KDTree(others).query(points)[0] > 0.6 * sizes
+    points, sizes = points[free], sizes[free]
+    kept = np.ones(len(points), bool)
+    for one, other in sorted(KDTree(points).query_pairs(0.6 * sizes.max(initial=0))):
+        if kept[one] and kept[other] and np.linalg.norm(points[one] - points[other]) < 0.6 * sizes[one]:
+            kept[other] = False
+    return np.asarray(points[kept])
 
 
 def areas_around(points: Array) -> Array:
-    """The area (n) of each point (n, 2): the third of each triangle around it. Two triangles whose four corners lie on a circle are
-    the halves of a quadrilateral, and each corner has a fourth of it: Delaunay's triangulation picks a diagonal by chance."""
-    rows = _triangulated(points)
-    return np.bincount(rows.ravel(), _corner_areas(points[rows], rows).ravel(), minlength=len(points))
+    """The area (n) of each point (n, 2): the third of each triangle around it."""
+    rows, shares, _ = _triangulated(points)
+    return _shared(len(points), rows, shares * _areas(points[rows]))
 
 
-def _corner_areas(corners: Array, rows: Indices) -> Array:
-    """The area (t, 3) at each corner of triangles (t, 3, 2)."""
+def _shared(count: int, rows: Indices, areas: Array) -> Array:
+    """The areas (t) of triangles shared among their corners."""
+    return np.bincount(rows.ravel(), np.repeat(areas / 3, 3), minlength=count)
+
+
+def _quadrilaterals(points: Array, rows: Indices) -> Indices:
+    """Pairs (k, 2) of triangles whose four corners lie on a circle, as corners counted over all triangles: they are the halves of a
+    quadrilateral, of which Delaunay's triangulation picks a diagonal by chance."""
+    corners = points[rows]
     edges = np.sort(np.stack([np.roll(rows, -1, axis=1), np.roll(rows, -2, axis=1)], axis=2), axis=2).reshape(-1, 2)
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)  # of each corner the edge that faces it
-    areas = _areas(corners)
     before, after = np.roll(opposite, 1, axis=1), np.roll(opposite, -1, axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cotangent = (-np.sum(before * after, axis=2) / (2 * areas[:, None])).ravel()
+    cotangent = (-np.sum(before * after, axis=2) / (2 * _areas(corners)[:, None])).ravel()
     order = np.lexsort(edges.T)
     first, second = order[:-1], order[1:]
     circular = (edges[first] == edges[second]).all(axis=1) & (np.abs(cotangent[first] + cotangent[second]) < _ON_CIRCLE)
-    parts = np.repeat(areas[:, None] / 3, 3, axis=1)
-    paired = np.zeros(len(rows), dtype=bool)
+    paired, found = np.zeros(len(rows), dtype=bool), []
     for one, other in zip(first[circular], second[circular]):
-        (t, corner), (u, facing) = divmod(one, 3), divmod(other, 3)
+        t, u = one // 3, other // 3
         if not (paired[t] or paired[u]):
             paired[[t, u]] = True
-            whole = areas[t] + areas[u]
-            parts[t], parts[u] = whole / 8, whole / 8
-            parts[t, corner], parts[u, facing] = whole / 4, whole / 4
-    return parts
+            found.append((one, other))
+    return np.array(found, np.int64).reshape(-1, 2)
 
 
 def _areas(corners: Array) -> Array:
@@ -98,9 +146,10 @@ def _areas(corners: Array) -> Array:
     return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
-def _triangulated(points: Array) -> Indices:
-    """Delaunay's triangles, without slivers along the hull and triangles that cross a gap."""
-    simplices = Delaunay(points - points.mean(axis=0)).simplices
+def _triangulated(points: Array) -> tuple[Indices, Array, npt.NDArray[np.bool_]]:
+    """Delaunay's triangles, without slivers along the hull and triangles that cross a gap; quadrilaterals along both diagonals, with
+    half a share each. Returns rows, shares and a mask of triangles that cover everything once, as triangles_of()."""
+    simplices = np.asarray(Delaunay(points - points.mean(axis=0)).simplices, dtype=np.int64)
     corners = points[simplices]
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     # The usual length of each point's edges: two fifths of them are shorter.
@@ -108,12 +157,17 @@ def _triangulated(points: Array) -> Indices:
     order, count = np.lexsort((length, vertex)), np.bincount(vertex, minlength=len(points))
     local = length[order][np.minimum(np.cumsum(count) - count + (2 * count) // 5, len(order) - 1)][simplices].max(axis=1)
     flat = 2 * _areas(corners) < 1e-3 * edges.max(axis=1)**2
-    return np.asarray(simplices[(edges.max(axis=1) < _GAP * local) & ~flat], dtype=np.int64)
+    rows = simplices[(edges.max(axis=1) < _GAP * local) & ~flat]
+    (t, corner), (u, facing) = (divmod(each, 3) for each in _quadrilaterals(points, rows).T)
+    a, b, c, d = rows[t, corner], rows[t, (corner + 1) % 3], rows[t, (corner + 2) % 3], rows[u, facing]
+    shares = np.ones(len(rows))
+    shares[np.concatenate([t, u])] = 0.5
+    others = np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
+    return (np.concatenate([rows, others]), np.concatenate([shares, np.full(len(others), 0.5)]),
+            np.concatenate([np.ones(len(rows), bool), np.zeros(len(others), bool)]))
 
 
 # ---------------------------------------------------------------- right answers on the mesh
-
-Fields = Callable[[Array], Array]
 
 
 def put_on(patches: Patches, fields: Fields) -> dict[str, Array]:

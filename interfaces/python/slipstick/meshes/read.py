@@ -16,18 +16,19 @@ centre  (x1, x2) of the body's axis, in the source's unit of length.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
 
 from ..errors import InputError
-from .field import Array, ContactField
+from .field import Array, ContactField, Indices
 from .files import load
 from .files.mesh import FACES, Mesh, in_space
 from .files.tables import FORMS
 from .names import Arrays, Names, checked_names
-from .patches import areas_around
+from .patches import areas_around, with_edge
 from .plane import Axis, Frame, check_flat, frame_of, given_normal
 from .radial import of_radial_table
 from .surface import KNOWN, contact_faces, face_areas, faces_of, nodal_areas, vertices_in_plane
@@ -74,6 +75,8 @@ def _of_table(mesh: Mesh, options: Options, units: Units, name: str) -> ContactF
                             "nodes": "Kind: rows are values at nodes, as no area is given.",
                             "points": "Kind: rows are values at points with a weight, as an area is given."}[kind])
     field = _without_duplicates(_field(kind, points, values, area=area, name=name))
+    if kind in ("nodes", "forces") and field.area is None:
+        field = with_edge(field)
     if values.are_forces and field.area is None:
         field.area = areas_around(field.points)
         field.said.append("Area: the forces are divided by a third of the triangles around each point (Delaunay), or by a fourth "
@@ -162,9 +165,22 @@ def _of_mesh(mesh: Mesh, options: Options, units: Units, name: str) -> ContactFi
     if kind == "forces" and any(faces.shape[1] > 4 for faces in of_types):
         raise InputError(f"{name}: nodal forces on quadratic faces, whose corners carry nothing or less under a uniform "
                          "pressure; allowed: values at nodes or faces, or forces on linear faces")
+    if kind == "forces":
+        vertices, of_types, values = _one_of_each_node(vertices, of_types, values)
     area = nodal_areas(of_types, vertices) if kind == "forces" else None
     field = _field(kind, vertices, values, area=area, vertices=vertices, faces=of_types, name=name)
     return _over_areas(field) if values.are_forces else field
+
+
+def _one_of_each_node(vertices: Array, faces: list[Indices], values: Values) -> tuple[Array, list[Indices], Values]:
+    """Nodal forces with each node once: files of several pieces repeat the nodes between them, with the whole force."""
+    size = np.ptp(vertices, axis=0).max(initial=0)
+    _, first, same = np.unique(np.round(vertices / (1e-9 * size)), axis=0, return_index=True, return_inverse=True)
+    if len(first) == len(vertices):
+        return vertices, faces, values
+    values.said.append(f"Rows: {len(vertices) - len(first)} nodes repeat others and are left out.")
+    kept = {key: value[first] for key, value in values.__dict__.items() if isinstance(value, np.ndarray)}
+    return vertices[first], [same.reshape(-1)[one] for one in faces], replace(values, **kept)
 
 
 def _cell_arrays(mesh: Mesh, options: Options, name: str) -> Optional[Arrays]:

@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 from ..errors import InputError
 from .field import Array, ContactField
 from .measures import Bodies, Judge, Kernels, Law, Motion
-from .patches import Patches, patches_of, put_on
+from .patches import Patches, patches_of, put_on, shortest_around
 from .right import Right
 
 #: Errors of right answers on the mesh, times this, are allowed: they know the mesh's own error to about a half.
@@ -133,7 +133,7 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     curved: how much further a sphere turns than the half-space in its place, over the right twist. Any part of it is allowed.
     """
     values = np.column_stack([field.pressure, field.traction])
-    patches = patches_of(field, right.fields(field.points)[:, 0])
+    patches = patches_of(field, right.fields)
     answers = put_on(patches, right.fields)
     ways = list(answers.values())
     reference = ways[0]
@@ -188,8 +188,11 @@ def _coverage(field: ContactField, judge: Judge, ways: list[Array], across: floa
     places = right.centre + 1.5 * right.contact_radius * _disc()
     pressure = right.fields(places)[:, 0]
     edges = np.linalg.norm(patches.corners - np.roll(patches.corners, 1, axis=1), axis=2).max(axis=1)
-    reach = np.zeros(len(patches.points))
-    np.maximum.at(reach, patches.rows, edges[:, None])
+    if field.faces or field.kind == "points":
+        reach = np.zeros(len(patches.points))
+        np.maximum.at(reach, patches.rows, edges[:, None])
+    else:  # a triangulation of nodes may bridge holes
+        reach = shortest_around(patches.rows, edges, len(patches.points))
     away, nearest = KDTree(patches.points).query(places)
     rim = right.fields(right.centre + (places - right.centre) / (1 - min(0.5, 1 / across)))[:, 0] == 0
     loaded = ways[0][:, 0] > 0
