@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -57,7 +58,11 @@ Json crossovers(const Json& seconds) {
 std::string crossovers_text(const Json& crossovers) {
   std::string text;
   for (const Json& crossing : crossovers) {
-    const auto number = [&](const char* key) { return number_text(crossing[key], "{:.3g}"); };
+    const auto number = [&](const char* key) {
+      const Json& found = crossing[key];
+      return number_text(found.is_number() ? found.get<double>() : std::numeric_limits<double>::quiet_NaN(),
+                         "{:.3g}");
+    };
     text += fmt::format("{} is quicker than {} from {} cells a side on [{}, {}]{}\n",
                         crossing["quick"].get<std::string>(), crossing["slow"].get<std::string>(),
                         number("cells"), number("low"), number("high"),
