@@ -68,11 +68,8 @@ convergence::ModuleAnswer run_benchmarks(const BenchRequest& request, Json what)
   return convergence::run_package_module("speed.programs", what);
 }
 
-/// Everything, one after the other, and the page.
-int survey(const BenchRequest& request, std::ostream& text, Json& result) {
-  const fs::path folder = request.output;
-  const fs::path data = folder / "data";
-  convergence::require_output("--accuracy-data", request.accuracy_data);
+/// Times parts of the solver by the program of Google Benchmark, and writes timings and how they grow.
+void time_parts(const BenchRequest& request, const fs::path& data, std::ostream& text, Json& result) {
   const convergence::ModuleAnswer timed = run_benchmarks(request, {{"what", "survey"},
                                                                    {"filter", request.filter},
                                                                    {"seconds", kSurveySeconds},
@@ -83,18 +80,31 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   Json laws = timed.rest.at("scaling");
   laws["crossovers"] = crossovers(timed.rest.at("seconds"));
   convergence::write_json_file(data / "scaling.json", laws);
+  text << crossovers_text(laws["crossovers"]);
+}
 
+/// Everything, one after the other, and the page. A wheel has no program of Google Benchmark: there only
+/// whole solves are timed.
+int survey(const BenchRequest& request, std::ostream& text, Json& result) {
+  const fs::path folder = request.output;
+  const fs::path data = folder / "data";
+  convergence::require_output("--accuracy-data", request.accuracy_data);
+  if (request.program.empty()) {
+    for (const char* old : {"timings.json", "scaling.json"}) fs::remove(data / old);
+  } else {
+    time_parts(request, data, text, result);
+  }
   const Json plane = measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
                                     .output = data / "finished",
                                     .quick = request.quick});
   const convergence::ModuleAnswer judged =
       convergence::run_package_module("speed.plane", {{"what", "judge"}, {"plane", plane}});
   convergence::write_json_file(data / "plane.json", judged.result);
+  if (request.program.empty()) result = judged.result;
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
-  text << crossovers_text(laws["crossovers"]) << judged.text << "page: " << (folder / "index.html").string()
-       << '\n';
+  text << judged.text << "page: " << (folder / "index.html").string() << '\n';
   return 0;
 }
 

@@ -14,7 +14,7 @@ NAME = "ro-crate-metadata.json"
 def parts(folder):
     """The files of a page, by their place in its folder."""
     files = [folder / "index.html", folder / "data" / "report.json"]
-    files += sorted((folder / "data").glob("*.h5")) + sorted((folder / "figures").glob("*"))
+    files += sorted(file for file in (folder / "data").glob("*") if file.suffix in (".h5", ".csv")) + sorted((folder / "figures").glob("*"))
     return [file.relative_to(folder).as_posix() for file in files if file.is_file()]
 
 

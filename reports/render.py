@@ -9,7 +9,7 @@ from pathlib import Path
 
 import script
 
-script.require("numpy", "matplotlib", "jinja2", "h5py")
+script.require("numpy", "matplotlib", "jinja2")
 
 import jinja2  # noqa: E402
 from markupsafe import Markup, escape  # noqa: E402

@@ -9,7 +9,6 @@ import math
 import re
 from collections import Counter
 
-import h5py
 import numpy as np
 
 NO_REASON = "no reason given"
@@ -139,14 +138,26 @@ def nulls(tree):
     return dict(found)
 
 
+def _datasets(path):
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        return {name: file[name][...] for name in file}
+
+
+def _table(path):
+    with open(path, encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+        return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2, unpack=True)))
+
+
 class Columns:
-    """The datasets of a field file, one value for each contact cell."""
+    """The columns of a field file (HDF5, or CSV), one value for each contact cell."""
 
     def __init__(self, path):
         try:
-            with h5py.File(path, "r") as file:
-                self.columns = {name: file[name][...] for name in file}
-        except OSError as error:
+            self.columns = (_table if path.suffix == ".csv" else _datasets)(path)
+        except (OSError, ValueError, ImportError) as error:
             raise Unavailable(f"{path.name} cannot be read: {re.sub(r' *[(].*', '', str(error))}") from error
         self.name = path.name
 

@@ -56,11 +56,12 @@ def bodies(page, folder):
 def answer(page, folder):
     """Slip and stick with directions, tractions, pressure on the finest mesh."""
     result = value(page, "answer")
-    solved = solve_figure.Solved(result, Cells(folder / "answer.h5", value(result, "cell_size")))
+    fields = text(page, "fields")
+    solved = solve_figure.Solved(result, Cells(folder / fields, value(result, "cell_size")))
     details = solve_figure.details(solved).replace("\\$", "$").replace("\N{NO-BREAK SPACE}", " ")
     return FigureEntry(f"{escape(solve_figure.message(solved))}.", escape(details),
                        "Three maps of the contact: slip and stick, tangential traction, pressure.",
-                       solve_figure.draw(solved, titled=False), sources=["answer.h5"])
+                       solve_figure.draw(solved, titled=False), sources=[fields])
 
 
 def _along(steps, key):

@@ -11,8 +11,9 @@ def require(*names):
     """Ends the script with exit code 2 unless all packages can be imported."""
     missing = [name for name in names if find_spec(name) is None]
     if missing:
-        print(f"{Path(sys.argv[0]).name}: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: "
-              "apt-get install " + " ".join(f"python3-{name}" for name in missing), file=sys.stderr)
+        print(f"{Path(sys.argv[0]).name}: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: apt-get install "
+              f"{' '.join(f'python3-{name}' for name in missing)}; elsewhere: {sys.executable} -m pip install {' '.join(missing)}",
+              file=sys.stderr)
         sys.exit(2)
     if "matplotlib" in names:  # read where no matplotlibrc of the user's can be found: a broken one ends its import
         here = Path.cwd()

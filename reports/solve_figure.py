@@ -8,7 +8,7 @@ from pathlib import Path
 
 import script
 
-script.require("numpy", "matplotlib", "h5py")
+script.require("numpy", "matplotlib")
 
 import numpy as np  # noqa: E402
 from matplotlib.collections import LineCollection  # noqa: E402
@@ -262,7 +262,7 @@ def draw(solved, titled=True):
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("result", type=Path, help="result of `slipstick solve --json`")
-    parser.add_argument("fields", type=Path, help="its contact cells, from `--fields` (HDF5); with {step} of each step")
+    parser.add_argument("fields", type=Path, help="its contact cells, from `--fields` (HDF5 or CSV); with {step} of each step")
     parser.add_argument("--output", type=Path, required=True,
                         help="figure to write: " + ", ".join(style.FORMATS) + "; with {step} one for each step")
     arguments = parser.parse_args(words)

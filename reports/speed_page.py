@@ -7,7 +7,7 @@ from pathlib import Path
 
 import script
 
-script.require("numpy", "matplotlib", "jinja2", "h5py")
+script.require("numpy", "matplotlib", "jinja2")
 
 import plane_figure  # noqa: E402
 import results  # noqa: E402
@@ -22,7 +22,7 @@ NAME = "figure-{}"
 
 def draw_all(scaling, plane, folder):
     """Every figure of the page, drawn or with the reason why not."""
-    drawings = [(title, lambda draw=draw: draw(scaling)) for title, draw in scaling_figure.FIGURES]
+    drawings = [(title, lambda draw=draw: draw(scaling)) for title, draw in scaling_figure.FIGURES if scaling]
     for scene in results.rows(plane, "scenes"):
         title = f"Speed against error at M/M_lim = {plain(results.number(scene, 'moment_ratio'))}"
         drawings.append((title, lambda scene=scene: plane_figure.draw(scene)))
@@ -30,15 +30,16 @@ def draw_all(scaling, plane, folder):
 
 
 def render(data, output):
-    """Writes output/index.html and output/figures/ from data/scaling.json and data/plane.json."""
-    scaling, plane = (results.load(data / f"{name}.json") for name in ("scaling", "plane"))
+    """Writes output/index.html and output/figures/ from data/plane.json and, if it is there, data/scaling.json."""
+    plane = results.load(data / "plane.json")
+    scaling = results.load(data / "scaling.json") if (data / "scaling.json").exists() else None
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     page = environment().get_template("speed.html.j2").render(
         figures=draw_all(scaling, plane, folder),
         times=tabulate(speed_tables.times_to_errors, plane),
-        laws=tabulate(speed_tables.laws, scaling),
-        crossovers=tabulate(speed_tables.crossovers, scaling),
+        laws=scaling and tabulate(speed_tables.laws, scaling),
+        crossovers=scaling and tabulate(speed_tables.crossovers, scaling),
         not_timed=plane.get("not_timed", []),
         provenance=plane.get("provenance", {}))
     write_whole(output / "index.html", page.encode())

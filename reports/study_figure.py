@@ -9,7 +9,7 @@ from pathlib import Path
 
 import script
 
-script.require("numpy", "matplotlib", "h5py")
+script.require("numpy", "matplotlib")
 
 import numpy as np  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402

@@ -31,9 +31,9 @@ fs::path package_folder() {
                   own_program_file().string()));
 }
 
-/// -I ignores PYTHONPATH, PYTHONHOME and the working folder.
+/// -E ignores PYTHONPATH and PYTHONHOME; the package's folder replaces the working folder.
 constexpr const char* kRunModule = R"(import sys
-sys.path.insert(0, sys.argv[1])
+sys.path[0] = sys.argv[1]
 try:
   from slipstick._module import main
 except ModuleNotFoundError as error:
@@ -53,7 +53,7 @@ std::string python_interpreter() {
 
 ModuleAnswer run_package_module(const std::string& module, const Json& request) {
   const std::string python = python_interpreter();
-  Program program({python, "-I", "-B", "-c", kRunModule, package_folder(), module},
+  Program program({python, "-E", "-B", "-c", kRunModule, package_folder(), module},
                   {.captured = Captured::output, .fed = true, .tied_by = own_program()});
   program.feed(request.dump(-1, ' ', true, Json::error_handler_t::replace));
   program.end_feed();

@@ -6,6 +6,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "convergence/programs/package_module.hpp"
+#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/system/machine.hpp"
 #include "convergence/system/run_program.hpp"
@@ -24,19 +26,12 @@ fs::path project_file(const fs::path& relative) {
 
 void run_report_script(const std::string& script, const std::vector<std::string>& arguments,
                        const std::string& done) {
-  const std::string python = SLIPSTICK_PYTHON;
-  if (python.empty()) {
-    throw std::runtime_error(fmt::format(
-        "{}, but no python3 with numpy, scipy, matplotlib, jinja2 and h5py was found when this program "
-        "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-scipy python3-matplotlib "
-        "python3-jinja2 python3-h5py; elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
-        done));
-  }
-  // -I ignores PYTHONPATH, PYTHONHOME and the working folder; the script imports from its own folder.
+  const std::string python = python_interpreter();
+  // -E ignores PYTHONPATH and PYTHONHOME; the script's folder replaces the working folder.
   constexpr const char* kRunScript =
-      "import runpy, sys; del sys.argv[0]; sys.path.insert(0, sys.argv[0].rpartition('/')[0]); "
-      "runpy.run_path(sys.argv[0], run_name='__main__')";
-  std::vector<std::string> words{python, "-I", "-c", kRunScript, project_file("reports") / script};
+      "import sys; del sys.argv[0]; sys.path[0] = sys.argv[0].rpartition('/')[0]; "
+      "import runpy; runpy.run_path(sys.argv[0], run_name='__main__')";
+  std::vector<std::string> words{python, "-E", "-c", kRunScript, project_file("reports") / script};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const ProgramEnd end = run_program(words, {.tied_by = own_program()});
   if (end.code != 0) {
@@ -53,12 +48,10 @@ void require_figure_format(const fs::path& figure) {
   solver::require_place_for(figure);
 }
 
-void draw_solve(const fs::path& figure, const Json& result, const TemporaryFolder& folder) {
-  const fs::path json = folder / "result.json";
+void draw_solve(const fs::path& figure, const Json& result, const fs::path& cells) {
+  const fs::path json = cells.parent_path() / "result.json";
   solver::write_whole_file(json, json_text(result));
-  const bool of_steps = figure.string().find("{step}") != std::string::npos;
-  run_report_script("solve_figure.py",
-                    {"--output=" + figure.string(), json, folder / (of_steps ? kFieldsOfSteps : kFieldsFile)},
+  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, cells},
                     "the result is complete");
 }
 

@@ -275,7 +275,10 @@ Json to_json(const SceneCosts& costs) {
 }
 
 Json to_json(const Page& page) {
-  Json json{{"provenance", page.provenance}, {"scene", to_json(page.scene)}, {"answer", page.answer}};
+  Json json{{"provenance", page.provenance},
+            {"scene", to_json(page.scene)},
+            {"answer", page.answer},
+            {"fields", page.fields}};
   set(json, "check", page.check);
   json.update(Json{{"studies", page.studies}, {"numbers", list(page.numbers)}});
   set(json, "uncertainty", page.uncertainty);

@@ -167,7 +167,8 @@ Json to_json(const Headline& headline);
 struct Page {
   Json provenance = {};
   SceneDescription scene = {};
-  Json answer = {};  ///< result on the finest mesh
+  Json answer = {};         ///< result on the finest mesh
+  std::string fields = {};  ///< name of the file of its fields
   std::optional<Json> check = {};
   Json studies = Json::array();  ///< of meshes, unless the scene has its own, and of tolerances
   std::vector<PageNumber> numbers = {};

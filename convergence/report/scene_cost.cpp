@@ -13,6 +13,7 @@
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
+#include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 #include "solver/scene/scene_keys.hpp"
@@ -210,7 +211,7 @@ SceneCosts scene_costs(const RunSpec& base, const PageSize& size, const std::vec
                              "its files have its grid; allowed: a scene that can be solved on other meshes");
   }
   solver::make_folder(folder);
-  const std::vector<Json> results = solve_answer(at, folder / "answer.h5", pool);
+  const std::vector<Json> results = solve_answer(at, folder / ("answer" + solver::fields_ending()), pool);
   SceneCosts costs{.provenance = provenance(std::max(1, at.scene.solver.threads)), .scene = at.scene.name};
   costs.numbers = number_rows(at.scene, results, scene_studies(at, pool).front());
   costs.costs = costs_of(at, {programs, costs.numbers, reference_of(results.back(), costs.numbers)}, pool);

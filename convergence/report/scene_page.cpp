@@ -19,6 +19,7 @@
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/solve/uncertainty.hpp"
+#include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -144,12 +145,13 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   const std::vector<UncertainInput> uncertain =
       uncertain_inputs({at.base.scene, at.base.overrides}, request.uncertain);
   solver::make_folder(folder);
-  const fs::path fields = folder / "answer.h5";
+  const fs::path fields = folder / ("answer" + solver::fields_ending());
   pool.progress().begin("answer");
   const std::vector<Json> results = solve_answer(at, fields, pool);
   Page page{.provenance = provenance(std::max(1, at.scene.solver.threads)),
             .scene = described(at),
-            .answer = results.back()};
+            .answer = results.back(),
+            .fields = fields.filename().string()};
   if (!at.own && has_tractions(page.answer)) page.check = check_program(at, page.answer, fields);
   std::vector<Finding> findings{judge_answer(page)};
   Json counts = Json::object();

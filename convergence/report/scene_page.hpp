@@ -26,8 +26,8 @@ struct PageRequest {
 /// The stages of scene_page(). scene: its name on a line of progress; empty: it is the only one.
 std::vector<Stage> page_stages(const PageRequest& request, const std::string& scene);
 
-/// Solves all that the page shows and judges it, then writes report.json and answer.h5 (the fields on the
-/// finest mesh) to the folder.
+/// Solves all that the page shows and judges it, then writes report.json and answer.h5 or .csv (the fields on
+/// the finest mesh) to the folder.
 ///   1. The answer on its meshes; studies of meshes and tolerances; each number with its error.
 ///   2. Error against time; equivalent scenes, coarse meshes and extreme loads; digits left by rounding.
 ///   3. The paper's validation, if it is requested.

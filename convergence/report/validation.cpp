@@ -21,6 +21,7 @@
 #include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "solver/input/field_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -92,7 +93,9 @@ struct MeshPoint {
   }
 };
 
-std::string fields_file(double moment_ratio) { return fmt::format("fields-{}.h5", moment_ratio); }
+std::string fields_file(double moment_ratio) {
+  return fmt::format("fields-{}{}", moment_ratio, solver::fields_ending());
+}
 
 /// The paper's sphere under another law of friction, with its overrides.
 struct Beyond {

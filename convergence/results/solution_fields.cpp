@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "convergence/oracle/errors.hpp"
@@ -38,11 +39,16 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
     const double s2 = solution.slip[cell + cells];
     return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
-  const auto sharp = std::make_shared<const std::vector<SharpenedCell>>(sharpened(solution).cells);
+  // Worked out for the first of their columns that is asked for.
+  const auto sharp =
+      [&solution, kept = std::make_shared<std::optional<std::vector<SharpenedCell>>>() ]() -> const auto& {
+    if (!*kept) *kept = sharpened(solution).cells;
+    return **kept;
+  };
   const auto add_sharp = [&](const char* name, const Eigen::ArrayXd& solved, Index start, const auto& of) {
     add(name, [sharp, &solved, start, of](Index cell) {
-      const auto found = std::ranges::lower_bound(*sharp, cell, {}, &SharpenedCell::cell);
-      return found != sharp->end() && found->cell == cell ? of(*found) : solved[start + cell];
+      const auto found = std::ranges::lower_bound(sharp(), cell, {}, &SharpenedCell::cell);
+      return found != sharp().end() && found->cell == cell ? of(*found) : solved[start + cell];
     });
   };
   add_sharp("pressure_sharpened", solution.pressure, 0, [](const SharpenedCell& c) { return c.pressure; });

@@ -24,6 +24,7 @@
 #include "convergence/system/machine.hpp"
 #include "solver/cache/solve_cache.hpp"
 #include "solver/history/history_state.hpp"
+#include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
 
@@ -38,18 +39,24 @@ void show_progress(int iteration, double change) {
     std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
+/// The cells of each step, in a temporary folder.
+std::string file_of_each_step() { return "fields-{step}" + std::string(solver::fields_ending()); }
+
 /// Writes fields and figure on all ranks; write_fields writes the cells to a file. The last step's fields of
 /// a history with one file a step were written at the end of that step.
 template <typename WriteFields>
 void write_files(const SolveRequest& request, const Json& result, const WriteFields& write_fields) {
   const auto& [fields, figure, loop, cells_of_steps] = request.files;
   if (!fields.empty() && !has_step(fields)) write_fields(fields);
-  if (cells_of_steps && request.ranks.first()) draw_solve(figure, result, *cells_of_steps);
+  if (cells_of_steps && request.ranks.first())
+    draw_solve(figure, result, *cells_of_steps / file_of_each_step().c_str());
   if (figure.empty() || cells_of_steps) return;
-  if (!request.ranks.first()) return write_fields(figure + ".h5");  // its cells go to the first rank's file
+  const std::string ending = solver::fields_ending();
+  if (!request.ranks.first()) return write_fields(figure + ending);  // its cells go to the first rank's file
   const TemporaryFolder folder;
-  write_fields(folder / kFieldsFile);
-  draw_solve(figure, result, folder);
+  const std::filesystem::path cells = folder / ("fields" + ending).c_str();
+  write_fields(cells);
+  draw_solve(figure, result, cells);
 }
 
 /// The names of its columns are those that `check` reads from a loop.
@@ -106,7 +113,7 @@ SolveSceneOptions grid_options(const SolveRequest& request, std::size_t finished
     ++step;
     if (has_step(files.fields)) write_solution_fields(file_of_step(files.fields, step), at, exact);
     if (files.cells_of_steps) {
-      const std::string cells = file_of_step(kFieldsOfSteps, step);
+      const std::string cells = file_of_step(file_of_each_step(), step);
       write_solution_fields(*files.cells_of_steps / cells.c_str(), at, exact);
     }
   };

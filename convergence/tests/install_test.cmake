@@ -49,4 +49,11 @@ execute_process(COMMAND ${solve} RESULT_VARIABLE status ERROR_VARIABLE error)
 if(NOT status EQUAL 2 OR NOT error MATCHES "libslipstick_hdf5.so")
   message(FATAL_ERROR "without its library for HDF5 the program ended with ${status}:\n${error}")
 endif()
+if(PYTHON)  # figures do not need it, and the Python package has the scenes
+  run(${WORK_DIR}/prefix/bin/slipstick solve ${scene} --set "grid.cells=[32,32]" --figure ${WORK_DIR}/figure.svg)
+  if(INTERFACES)
+    run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK_DIR}/prefix/share/slipstick/python ${PYTHON} -B -c
+      "import slipstick; assert slipstick.solve(slipstick.scene('paper'), grid__cells=[32, 32]).converged")
+  endif()
+endif()
 file(REMOVE_RECURSE ${WORK_DIR})

@@ -178,8 +178,9 @@ int slipstick_solution_grid(const slipstick_solution* solution, size_t cells[2],
 
 /* A field: one number a cell, cell (i, j) at i * cells[1] + j. x1, x2 (m), pressure, q1, q2 (Pa, on the lower
  * body), slip1, slip2 (m, of the last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened,
- * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (if known); an exact answer has no slips. Valid until
- * the solution is freed. */
+ * q1_sharpened, q2_sharpened (Pa), q1_exact, q2_exact (if known); an exact answer has no slips.
+ * "steps[3].q1": at the end of an earlier step of a history, counted from 0. Those from x1 to dissipated are
+ * kept of all steps, if they take at most 512 MiB. Valid until the solution is freed. */
 int slipstick_solution_field(const slipstick_solution* solution, const char* name, const double** values,
                              size_t* count);
 

@@ -2,14 +2,18 @@
 #include <fmt/core.h>
 #include <pthread.h>
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <shared_mutex>
+#include <string_view>
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/make_record.hpp"
 #include "convergence/results/record_text.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/results/solution_fields.hpp"
@@ -28,6 +32,8 @@ extern "C" void fftw_set_planner_hooks(void (*before)(), void (*after)());
 struct slipstick_solution {
   slipstick::solver::Grid grid{};
   std::vector<slipstick::solver::Column> columns;
+  std::vector<std::vector<slipstick::solver::Column>>
+      steps;  ///< columns of a history's steps; empty: not kept
   Eigen::ArrayXd pressure;
   slipstick::convergence::Json result;
   std::string json;
@@ -39,6 +45,14 @@ namespace {
 
 using convergence::Json;
 using solver::Scene;
+
+using Columns = std::vector<solver::Column>;
+
+/// Most bytes of the fields of all steps that a solution keeps.
+constexpr double kMostStepBytes = 512.0 * 1024 * 1024;
+constexpr std::size_t kAllColumns = std::numeric_limits<std::size_t>::max();
+/// Columns that are kept of a step: x1 to dissipated.
+constexpr std::size_t kStepColumns = 9;
 
 /// The arguments of slipstick_solve().
 struct Request {
@@ -110,23 +124,43 @@ Request request_of(const char* scene, const char* file, size_t n_overrides, cons
   return request;
 }
 
+/// The columns of a solution, at most so many.
+Columns columns_of(const solver::Solution& solution, const convergence::OracleAnswer& exact,
+                   std::size_t most) {
+  Columns columns;
+  const solver::Index cells = solution.grid.cells();
+  std::vector<solver::FieldColumn> known = convergence::solution_columns(solution, exact);
+  known.resize(std::min(known.size(), most));
+  for (const solver::FieldColumn& column : known) {
+    columns.push_back({column.name, Eigen::ArrayXd(cells)});
+    column.values(0, cells, columns.back().values.data());
+  }
+  return columns;
+}
+
+/// steps: gets the fields of each step of a history, unless all together may be larger than kMostStepBytes;
+/// null: they are not kept.
 convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request,
                                       const std::shared_ptr<solver::SolveCache>& cache = {},
-                                      solver::Detail detail = solver::Detail::all) {
+                                      solver::Detail detail = solver::Detail::all,
+                                      std::vector<Columns>* steps = nullptr) {
+  const bool wanted = steps != nullptr && convergence::has_history(scene);
+  const double count = static_cast<double>(scene.steps.size()) * scene.cycles;
+  const auto on_step = [&](const solver::Solution& at, const convergence::OracleAnswer&) {
+    const double bytes = kStepColumns * sizeof(double) * static_cast<double>(at.grid.cells()) * count;
+    if (wanted && bytes <= kMostStepBytes) steps->push_back(columns_of(at, {}, kStepColumns));
+  };
   const auto progress = [&](int iteration, double change) {
     if (request.progress != nullptr && request.progress(iteration, change, request.user) != 0)
       throw Stopped{};
   };
-  return convergence::solve_scene(scene, {.progress = progress, .cache = cache, .detail = detail});
+  return convergence::solve_scene(
+      scene, {.progress = progress, .on_step = on_step, .cache = cache, .detail = detail});
 }
 
 void keep(slipstick_solution& kept, const convergence::SolvedScene& solved, const Scene& scene) {
   kept.grid = solved.solution.grid;
-  const solver::Index cells = kept.grid.cells();
-  for (const solver::FieldColumn& column : convergence::solution_columns(solved.solution, solved.exact)) {
-    kept.columns.push_back({column.name, Eigen::ArrayXd(cells)});
-    column.values(0, cells, kept.columns.back().values.data());
-  }
+  kept.columns = columns_of(solved.solution, solved.exact, kAllColumns);
   kept.pressure = solved.solution.pressure;
   kept.result = to_json(solved.record);
   kept.text = solve_text(solved.record, solver::Units(scene.units));
@@ -152,7 +186,7 @@ std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, con
     answer_exactly(kept, scene);
     return {};
   }
-  const convergence::SolvedScene solved = find_on_grid(scene, request);
+  const convergence::SolvedScene solved = find_on_grid(scene, request, {}, solver::Detail::all, &kept.steps);
   keep(kept, solved, scene);
   return solved.solution.status == solver::Status::converged ? std::string() : solved.solution.message;
 }
@@ -198,6 +232,29 @@ int solve(const Request& request, slipstick_solution& kept) {
   if (why.empty() && kept.result.at("status") == "converged") return SLIPSTICK_OK;
   set_message(why.c_str());
   return SLIPSTICK_NOT_CONVERGED;
+}
+
+/// The columns of the step that a field's name begins with, as "steps[3].", which is taken from the name; the
+/// last step's for other names.
+const Columns& columns_named(const slipstick_solution& solution, std::string_view& name) {
+  constexpr std::string_view kSteps = "steps[";
+  constexpr std::string_view kOfStep = "].";
+  if (!name.starts_with(kSteps)) return solution.columns;
+  std::size_t step = 0;
+  const char* const last = name.data() + name.size();
+  const char* const end = std::from_chars(name.data() + kSteps.size(), last, step).ptr;
+  const std::string_view rest(end, last);
+  if (rest.starts_with(kOfStep) && step < solution.steps.size()) {
+    name = rest.substr(kOfStep.size());
+    return solution.steps[step];
+  }
+  throw std::invalid_argument(
+      fmt::format("field \"{}\"; allowed: {}", name,
+                  !solution.steps.empty() ? fmt::format("steps[0] to steps[{}]", solution.steps.size() - 1)
+                                          : "fields of the last step, since those of all steps are kept only "
+                                            "for histories on a grid, without "
+                                            "an accuracy, where they take at most 512 MiB; slipstick solve "
+                                            "--fields NAME{step}.csv writes them"));
 }
 
 /// The number; if there is none, NaN and `why`.
@@ -273,8 +330,9 @@ int slipstick_solution_field(const slipstick_solution* solution, const char* nam
     c::require(values, "values");
     c::require(count, "count");
     std::string names;
-    for (const solver::Column& column : solution->columns) {
-      if (column.name == name) {
+    std::string_view wanted = name;
+    for (const solver::Column& column : c::columns_named(*solution, wanted)) {
+      if (column.name == wanted) {
         *values = column.values.data();
         *count = static_cast<size_t>(column.values.size());
         return;

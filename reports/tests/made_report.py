@@ -168,7 +168,7 @@ def small_page():
         "scene": {"name": "made up", "text": "# So &\n# so. More.\nname = \"made up\"", "summary": [["Indenter", "sphere, radius 18 mm"]],
                   "gap": {"x1": [-1.0, 0.0, 1.0], "along_1": [1e-3, 0.0, None], "x2": [-1.0, 1.0], "along_2": [1e-3, 1e-3],
                           "map": [[1e-3, 2e-3], [0.0, 1e-3], [1e-3, None]]}},
-        "answer": answer,
+        "answer": answer, "fields": "answer.h5",
         "numbers": [number("twist_angle", "twist", "rad", 1.25e-3, 3e-3), number("moment", "moment", "N m", 2e-6, None, "no mesh"),
                     number("stick_radius", "stick radius", "m", 4e-4, -2e-2, "order 2"), number("stick_ratio", "stick ratio", "", 0.5, 0.01),
                     number("contact_radius", "contact radius", "m", 1.5e-3, 2e-4)],

@@ -81,6 +81,20 @@ class Maps(Figure):
         np.testing.assert_array_equal(cells.extent, [-1.5, 1.5, -1.5, 0.5])
 
 
+    def test_of_csv_are_those_of_hdf5(self):
+        """A program without HDF5 writes CSV, which has every digit."""
+        x1, x2 = disc(9, 5, 1 / 3, 1e-7)
+        self.write(x1, x2)
+        table = np.column_stack([x1, x2, x1 / 7])
+        np.savetxt(self.folder / "map.csv", table, "%.17g", ",", header="x1,x2,q1", comments="")
+        cells = Cells(self.folder / "map.csv", CELL)
+        np.testing.assert_array_equal(cells.columns["q1"], x1 / 7)
+        np.testing.assert_array_equal(cells.extent, Cells(self.fields, CELL).extent)
+        (self.folder / "map.csv").write_text("x1,x2\n1,a\n")
+        with self.assertRaisesRegex(Unavailable, "map.csv cannot be read"):
+            Cells(self.folder / "map.csv", CELL)
+
+
 class Names(Figure):
     def test_are_text_whatever_they_look_like(self):
         """No mathematics, no markup, nothing that an SVG may not hold; a name may begin with a dash."""

@@ -116,6 +116,20 @@ class Figures(unittest.TestCase):
             plane_figure.draw(scene(points=[POINTS[3]]))
 
 
+class Page(unittest.TestCase):
+    def test_stands_without_the_timings_of_parts(self):
+        """An installation without a program of Google Benchmark times whole solves only."""
+        for parts in (True, False):
+            with tempfile.TemporaryDirectory() as name, patch.object(style, "save", save_nothing):
+                folder = Path(name)
+                (folder / "plane.json").write_text(json.dumps(plane()))
+                if parts:
+                    (folder / "scaling.json").write_text(json.dumps(scaling()))
+                speed_page.render(folder, folder)
+                page = (folder / "index.html").read_text()
+            self.assertEqual([word in page for word in ("Time to an error", "Laws of growth", "only whole solves")], [True, parts, not parts])
+
+
 class OnThePageOfAll(unittest.TestCase):
     def test_stands_there_where_it_was_measured(self):
         with tempfile.TemporaryDirectory() as name, patch.object(style, "save", save_nothing):

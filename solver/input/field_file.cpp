@@ -233,6 +233,15 @@ void require_field_format(const path& file) {
   }
 }
 
+std::string fields_ending() {
+  try {
+    hdf5_library({});
+    return ".h5";
+  } catch (const InputError&) {
+    return ".csv";
+  }
+}
+
 void write_fields(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                   const ArrayXd& keep) {
   require_field_format(file);

@@ -55,6 +55,10 @@ Eigen::ArrayXXd read_matrix(const std::filesystem::path& file, const std::string
 /// Throws InputError unless the ending is one that write_fields knows.
 void require_field_format(const std::filesystem::path& file);
 
+/// The ending of the files of fields that this program's own scripts read: .h5, or .csv where the HDF5
+/// library is not installed.
+std::string fields_ending();
+
 /// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
 /// image data, for ParaView) gets all cells. The file is the old one or the whole new one, and the same
 /// numbers give the same bytes. Memory holds a row of one column for .h5, a row for .csv and a column for

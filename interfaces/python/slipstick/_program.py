@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ._library import PROGRAM
+from ._scenes import SHARE
 from .errors import Failure, InputError
 
 _MESSAGE = "slipstick: "
@@ -51,5 +52,14 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
 
 def main() -> None:
     """The program itself, as `slipstick` on the command line."""
-    os.environ.setdefault("SLIPSTICK_PYTHON", sys.executable)  # runs the commands that are modules of this package
-    os.execv(PROGRAM, ["slipstick", *sys.argv[1:]])
+    os.environ.setdefault("SLIPSTICK_PYTHON", sys.executable)  # draws, and runs the commands that are modules of this package
+    os.execv(PROGRAM, ["slipstick", *map(_packaged, sys.argv[1:])])
+
+
+def _packaged(word: str) -> str:
+    """A path as in the source tree, "convergence/scenes/paper.toml", names the package's own file where there is no other."""
+    own = SHARE / word
+    if not word.startswith("convergence/") or os.path.exists(word) or not own.is_file():
+        return word
+    print(f"slipstick: {word} is the file of the package, {own}", file=sys.stderr)
+    return os.fspath(own)

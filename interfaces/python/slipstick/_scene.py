@@ -3,7 +3,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
@@ -62,13 +65,32 @@ def toml_text(scene: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def text_of(scene: Scene) -> tuple[str | None, str]:
-    """A scene's text (None if it is a file), and its name in messages."""
-    if isinstance(scene, Mapping):
-        return toml_text(scene), "scene"
-    if isinstance(scene, str) and "\n" in scene:
-        return scene, "scene"
-    return None, os.fspath(scene)
+@contextmanager
+def prepared(scene: Scene, overrides: Mapping[str, Any]) -> Iterator[tuple[str | None, str, list[str]]]:
+    """A scene's text (None if it is a file), its name in messages, and the overrides in the form of --set. Arrays of two dimensions
+    in them, height maps for example, are files as long as this lasts."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = assignments(_with_files(overrides, folder))
+        if isinstance(scene, Mapping):
+            yield toml_text(_with_files(scene, folder)), "scene", words
+        elif isinstance(scene, str) and "\n" in scene:
+            yield scene, "scene", words
+        else:
+            yield None, os.fspath(scene), words
+
+
+def _with_files(value: Any, folder: str) -> Any:
+    """The same with a CSV file in the place of each array of two dimensions."""
+    if isinstance(value, Mapping):
+        return {name: _with_files(part, folder) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_with_files(part, folder) for part in value]
+    if not isinstance(value, np.ndarray) or value.ndim != 2:
+        return value
+    handle, file = tempfile.mkstemp(".csv", "array-", folder)
+    os.close(handle)
+    np.savetxt(file, value, fmt="%.17g", delimiter=",")
+    return Path(file)
 
 
 def assignments(overrides: Mapping[str, Any]) -> list[str]:

@@ -27,6 +27,9 @@ import numpy.typing as npt
 from . import _library
 from .errors import InputError
 
+__all__ = ["twist", "moment_ratio", "moment", "stick_ratio", "tangent_stiffness", "energy_lost", "states", "traction", "pressure",
+           "history", "curve", "Profile", "profile_named", "Contact", "contact_of"]
+
 Values = Optional[npt.ArrayLike]
 _GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")
 _WANTED = (*_GIVEN, "moment", "tangent_stiffness")

@@ -11,23 +11,23 @@ from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _hdf5
+from ._columns import Columns, columns_of, explained, field_columns, is_loop, is_readable
 from ._program import run
-from ._scene import Scene, assignments, text_of
+from ._scene import Scene, prepared
 from .errors import InputError
 from .result import Result
 
-_COLUMNS = ("x1", "x2", "pressure", "q1", "q2")
-#: Columns of fields that are on no regular grid: with the columns above, and of tables in other forms.
-_OF_POINTS, _OF_MESHES = ("area", "slip1", "slip2", "gap"), ("r", "fn", "x", "y")
 Path_ = Union[str, "os.PathLike[str]"]
 Progress = Optional[Callable[[str], object]]
 
 
 class Check(Result):
     """A verdict on a field: `verdict` ("good" or "bad"), `why` in one sentence, and each error with its tolerance."""
+
+    verdict: str
+    why: str
 
     @property
     def good(self) -> bool:
@@ -37,6 +37,8 @@ class Check(Result):
 class Gates(Result):
     """Verdicts of gates: `gates` with a row for each, `counts` by outcome, and `passed`: no gate failed unexpectedly, and none was
     refused."""
+
+    gates: list[Result]
 
     @property
     def passed(self) -> bool:
@@ -57,50 +59,49 @@ class Study(Result):
 
 
 @contextmanager
-def _files(scene: Scene, field: Any, reading: Mapping[str, Any]) -> Iterator[list[str]]:
-    """The names of temporary files with the scene and the field."""
-    with tempfile.TemporaryDirectory() as folder:
-        text, name = text_of(scene)
+def _files(scene: Scene, field: Any, reading: Mapping[str, Any], overrides: Mapping[str, Any]) -> Iterator[list[str]]:
+    """The names of files with the scene and the field, and the overrides as options; files of objects are temporary."""
+    with tempfile.TemporaryDirectory() as folder, prepared(scene, overrides) as (text, name, assigned):
         if text is not None:
             name = os.path.join(folder, "scene.toml")
             Path(name).write_text(text)
-        yield [name, _file_of(field, reading, Path(folder))]
+        yield [name, _file_of(field, reading, Path(folder)), *_set(assigned)]
 
 
 def _file_of(field: Any, reading: Mapping[str, Any], folder: Path) -> str:
-    """The file of a field, which is written if it is an object: arrays on a grid or of a loop, or a field on a mesh."""
+    """The file of a field, which is written if it is an object: columns of a field or of a loop, or a field on a mesh."""
     is_file = isinstance(field, (str, os.PathLike))
     if is_file and _hdf5.is_h5py_needed(field):
-        field = _hdf5.read(field)
+        field, is_file = _hdf5.read(field), False
     elif is_file and not reading:
         return os.fspath(field)
-    if not reading and isinstance(field, Mapping) and ("x1" in field or not any(name in field for name in _OF_MESHES)):
-        return _written(field, os.fspath(folder / "field"))
+    columns = None if is_file or reading or hasattr(field, "points") else columns_of(field)
+    if columns is not None:
+        if (own := field_columns(columns)) is not None:
+            return _written(own, folder / "field.csv")
+        if is_loop(columns):
+            file = folder / "field.json"
+            file.write_text(json.dumps({name: np.asarray(values, float).tolist() for name, values in columns.items()}))
+            return os.fspath(file)
+        if not is_readable(columns):
+            raise explained(columns, type(field).__name__)
     from .meshes import read
 
     file = folder / "field.contact"
-    read(field, **reading).save(file)
+    read(field if columns is None else columns, **reading).save(file)
     return os.fspath(file)
 
 
-def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
-    if not any(name in field for name in _COLUMNS):  # a loop
-        file += ".json"
-        Path(file).write_text(json.dumps({name: np.asarray(values, float).ravel().tolist() for name, values in field.items()}))
-        return file
-    file += ".csv"
-    missing = [name for name in _COLUMNS if name not in field]
-    if missing:
-        raise InputError(f"the field has no {', '.join(missing)}; allowed: arrays {', '.join(_COLUMNS)}")
-    names = [*_COLUMNS, *(name for name in _OF_POINTS if name in field)]
-    columns = [np.asarray(field[name], dtype=np.float64).ravel() for name in names]
-    if len({column.size for column in columns}) > 1:
-        raise InputError(f"the field's arrays have {', '.join(str(column.size) for column in columns)} values; "
+def _written(columns: Columns, file: Path) -> str:
+    """A table of the rows that carry a pressure or a traction."""
+    sizes = {name: values.size for name, values in columns.items()}
+    if len({*sizes.values()}) > 1:
+        raise InputError(f"the field's arrays have {', '.join(f'{name} {size}' for name, size in sizes.items())} values; "
                          "allowed: one a cell in each")
-    cells = np.column_stack(columns)
-    cells = cells[(cells[:, 2:5] != 0).any(axis=1)]
-    np.savetxt(file, cells, fmt="%.17g", delimiter=",", header=",".join(names), comments="")
-    return file
+    rows = np.column_stack([np.asarray(values, np.float64) for values in columns.values()])
+    rows = rows[(rows[:, 2:5] != 0).any(axis=1)]
+    np.savetxt(file, rows, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    return os.fspath(file)
 
 
 def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: float | None = None, discrete: bool = False,
@@ -108,13 +109,13 @@ def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: fl
           held_at: float | tuple[float, float] | None = None, read_as: Mapping[str, Any] | None = None, **overrides: Any) -> Check:
     """Judges tractions from any program; docs/guides/verify-your-solver.md explains each number.
 
-    field: a file, or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell, like the fields of a
-    Solution. Or a field at any points or on a mesh: an object of meshio or pyvista, a DataFrame, arrays. Or a loop, as a file or as
-    arrays: moment (N m), rotation (rad), or force (N), displacement (m), and optionally time, normal_load. twist: the reported twist
-    in rad (`twist_angle` of a result, not its normalised `twist`). tolerance: the allowed error, instead of the tolerance of the
-    mesh. pressure_given: the pressure is not judged. discrete: good only if the field solves the discrete problem of its grid.
-    strict: good only in the scene's own units and signs. overrides: as in solve(). If the scene is not a file, write paths in it as
-    absolute paths.
+    field: a file, or columns by name, in a dict, a DataFrame, an array of records or a Dataset of xarray: x1, x2 (m, cell centres),
+    pressure, q1, q2 (Pa), one number a cell, like the fields of a Solution; x, y, p, tau_x, tau_y and other common names are known.
+    Or a field at any points or on a mesh: columns, or an object of meshio or pyvista. Or a loop, as a file or as columns: moment
+    (N m), rotation (rad), or force (N), displacement (m), and optionally time, normal_load. twist: the reported twist in rad
+    (`twist_angle` of a result, not its normalised `twist`). tolerance: the allowed error, instead of the tolerance of the mesh.
+    pressure_given: the pressure is not judged. discrete: good only if the field solves the discrete problem of its grid. strict: good
+    only in the scene's own units and signs. overrides: as in solve(). If the scene is not a file, write paths in it as absolute paths.
 
     For a field on a mesh only: stick_slope, normal_stiffness: of its penalties, Pa/m. held_at: the radius at which its bodies are
     held, m, and perhaps a factor of the effect. read_as: choices for its reader: kind, units, body, axis, basis, centre, names.
@@ -127,8 +128,7 @@ def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: fl
     if held_at is not None:
         options += ["--held-at", ",".join(repr(float(part)) for part in np.atleast_1d(held_at))]
     options += ["--discrete"] * discrete + ["--strict"] * strict + ["--pressure-given"] * pressure_given
-    options += _set(overrides)
-    with _files(scene, getattr(field, "fields", field), read_as or {}) as files:
+    with _files(scene, getattr(field, "fields", field), read_as or {}, overrides) as files:
         return Check(run("check", *files, *options))
 
 
@@ -152,6 +152,19 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
         return Gates(run("gate", *words, progress=progress))
 
 
+def assert_gates(files: Path_ | Iterable[Path_], **options: Any) -> Gates:
+    """As gate(), for tests: AssertionError with a line for each gate that does not pass.
+
+        def test_accuracy():
+            slipstick.assert_gates("gates.toml")
+    """
+    __tracebackhide__ = True  # pytest shows the line of the test
+    gates = gate(files, **options)
+    if not gates.passed:
+        raise AssertionError(gates.why)
+    return gates
+
+
 def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, executor: Executor | None = None,
           progress: Progress = None, **overrides: Any) -> Study:
     """Solves a scene on many meshes or with many tolerances, and judges orders and errors (docs/reference/study.md).
@@ -161,8 +174,8 @@ def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, executor: 
     machines that have this package and see the files under the same paths (docs/guides/many-scenes.md). overrides: replace keys
     of the scene, as in solve().
     """
-    with _kept(output) as folder:
-        words = [file, *_set(overrides), "--output", folder, "--jobs", str(jobs)]
+    with _kept(output) as folder, prepared(Path(file), overrides) as (_, name, assigned):
+        words: list[Path_] = [name, *_set(assigned), "--output", folder, "--jobs", str(jobs)]
         _solve_listed("study", words, executor, progress)
         return Study(run("study", *words, progress=progress))
 
@@ -206,8 +219,8 @@ def _solve_line(line: str, folder: str) -> None:
         run("run", file, "--only", "1", folder=folder)
 
 
-def _set(overrides: Mapping[str, Any]) -> list[str]:
-    return [word for assignment in assignments(overrides) for word in ("--set", assignment)]
+def _set(assigned: list[str]) -> list[str]:
+    return [word for assignment in assigned for word in ("--set", assignment)]
 
 
 @contextmanager

@@ -3,8 +3,16 @@ from __future__ import annotations
 
 import copy
 import html
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
 from typing import Any
+
+
+def unknown(name: str, names: Iterable[str]) -> str:
+    """The end of a message on a name that does not exist: the name that is most like it, else all of them."""
+    known = list(names)
+    found = get_close_matches(name, known, 1, 0.5)
+    return f"; the nearest name is {found[0]}" if found else f"; allowed: {', '.join(known) or 'none'}"
 
 
 def _wrapped(value: Any) -> Any:
@@ -22,9 +30,9 @@ class Result(Mapping[str, Any]):
     >>> result = Result({"twist": 0.1, "certificate": {"gap": None, "gap_reason": "nothing slips"}})
     >>> result.twist, result.certificate.gap, result.certificate.reason("gap")
     (0.1, None, 'nothing slips')
-    >>> result.mass
+    >>> result.twst
     Traceback (most recent call last):
-    AttributeError: the result has no mass; it has: twist, certificate
+    AttributeError: the result has no twst; the nearest name is twist
     """
 
     def __init__(self, data: dict[str, Any]) -> None:
@@ -41,7 +49,8 @@ class Result(Mapping[str, Any]):
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in self._data:
-            raise AttributeError(f"the result has no {name}; it has: {', '.join(self.__dict__.get('_data', {}))}")
+            known = [key for key in self.__dict__.get("_data", {}) if not key.endswith("_reason")]
+            raise AttributeError(f"the result has no {name}{unknown(name, known)}")
         return self[name]
 
     def __dir__(self) -> list[str]:

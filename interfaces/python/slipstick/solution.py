@@ -15,9 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _hdf5, _library
-from ._scene import Scene, assignments, text_of
+from ._scene import Scene, prepared
 from .errors import InputError, NotConvergedWarning
-from .result import Result
+from .result import Result, unknown
+
+
+#: Lines of the text that a solution shows of itself.
+_SHOWN = ("status", "moment", "twist", "certificate")
 
 
 class _Handle:
@@ -30,17 +34,23 @@ class _Handle:
     def __reduce__(self) -> tuple[Any, ...]:
         return type(None), ()
 
-    def fields(self) -> "Fields":
+    def fields(self, step: str = "") -> "Fields":
+        """The fields of the last step, or of one like "steps[3]."."""
         cells, size = (ctypes.c_size_t * 2)(), (ctypes.c_double * 2)()
         _library.checked(_library.function("solution_grid")(self.pointer, cells, size))
+        names: list[str] = []
+        while (known := _library.function("solution_field_name")(self.pointer, len(names))) is not None:
+            names.append(known.decode())
         arrays = {}
-        while (name := _library.function("solution_field_name")(self.pointer, len(arrays))) is not None:
+        for name in names:
+            if step and "_" in name:  # corrected and exact tractions are those of the last step
+                continue
             values, count = ctypes.POINTER(ctypes.c_double)(), ctypes.c_size_t()
             _library.checked(_library.function("solution_field")(
-                self.pointer, name, _library.byref(values), _library.byref(count)))
+                self.pointer, (step + name).encode(), _library.byref(values), _library.byref(count)))
             memory = (ctypes.c_double * count.value).from_address(ctypes.addressof(values.contents))
             memory.handle = self  # type: ignore[attr-defined]
-            arrays[name.decode()] = array = np.frombuffer(memoryview(memory), np.float64).reshape(cells[0], cells[1])
+            arrays[name] = array = np.frombuffer(memoryview(memory), np.float64).reshape(cells[0], cells[1])
             array.flags.writeable = False
         return Fields(arrays)
 
@@ -49,15 +59,33 @@ class Fields(Mapping[str, npt.NDArray[np.float64]]):
     """The fields of a solution by name: x1, x2 (m), pressure, q1, q2 (Pa, on the lower body), slip1, slip2 (m, of the
     last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened, q1_sharpened, q2_sharpened (Pa, corrected
     near square-root edges), q1_exact, q2_exact (if known). Arrays of cells[0] x cells[1] in the library's memory, read-only;
-    each keeps the solution alive."""
+    each keeps the solution alive. fields.q1 is fields["q1"]."""
 
     def __init__(self, arrays: dict[str, npt.NDArray[np.float64]]) -> None:
         self._arrays = arrays
 
+    x1: npt.NDArray[np.float64]
+    x2: npt.NDArray[np.float64]
+    pressure: npt.NDArray[np.float64]
+    q1: npt.NDArray[np.float64]
+    q2: npt.NDArray[np.float64]
+    slip1: npt.NDArray[np.float64]
+    slip2: npt.NDArray[np.float64]
+    stick: npt.NDArray[np.float64]
+    dissipated: npt.NDArray[np.float64]
+
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
         if name not in self._arrays:
-            raise KeyError(f"{name}; allowed: {', '.join(self) or 'none, there are no fields'}")
+            raise KeyError(f"there is no field {name}{unknown(name, self)}")
         return self._arrays[name]
+
+    def __getattr__(self, name: str) -> npt.NDArray[np.float64]:
+        if name.startswith("_") or name not in self._arrays:
+            raise AttributeError(f"there is no field {name}{unknown(name, self.__dict__.get('_arrays', ()))}")
+        return self._arrays[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._arrays]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._arrays)
@@ -69,9 +97,57 @@ class Fields(Mapping[str, npt.NDArray[np.float64]]):
         return f"Fields({', '.join(self)}{''.join(f': {x1.shape[0]} x {x1.shape[1]}' for x1 in [*self.values()][:1])})"
 
 
-class Solution(Result):
+class _WithFields(Result):
+    """Numbers with the fields that they belong to."""
+
+    fields: Fields
+
+    def plot(self) -> Any:
+        """A matplotlib figure: pressure, traction with its direction, slip and stick. Needs matplotlib (slipstick[plots])."""
+        from ._plot import drawn
+
+        return drawn(self.fields, self.get("name", ""))
+
+
+class Step(_WithFields):
+    """A step of a history: its numbers, and its fields at its end, from x1 to dissipated."""
+
+    def __init__(self, data: dict[str, Any], fields: Fields | InputError) -> None:
+        super().__init__(data)
+        self._fields = fields
+
+    @property
+    def fields(self) -> Fields:  # type: ignore[override]
+        if isinstance(self._fields, InputError):
+            raise self._fields
+        return self._fields
+
+    def __repr__(self) -> str:
+        return f"Step({self.name!r}: {self.status}, moment {self.moment:.6g} N m, twist {self.twist_angle:.6g} rad)"
+
+
+class Solution(_WithFields):
     """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text. A pickled or
     copied solution contains them; only write() needs the process that solved."""
+
+    name: str
+    status: str
+    cells: list[int]
+    cell_size: list[float]
+    normal_load: float
+    contact_radius: float | None
+    stick_radius: float | None
+    stick_ratio: float | None
+    peak_pressure: float
+    twist: float | None
+    twist_angle: float
+    twist_error: float | None
+    moment: float
+    moment_ratio: float | None
+    moment_limit: float | None
+    certificate: Result
+    resolved: Result
+    limit: Result
 
     def __init__(self, pointer: int, message: str) -> None:
         self._handle: _Handle | None = _Handle(pointer)
@@ -79,8 +155,28 @@ class Solution(Result):
         self.message = message
         """The reason why it cannot be trusted; empty if it converged and reached the requested accuracy."""
         self.fields = self._handle.fields()
+        self._of_steps = [self._of_step(self._handle, k) for k in range(len(self._data.get("steps") or []))]
         self.text = _library.text("solution_text", pointer)
         """The result as the program prints it."""
+
+    @staticmethod
+    def _of_step(handle: _Handle, step: int) -> Fields | InputError:
+        try:
+            return handle.fields(f"steps[{step}].")
+        except InputError as error:
+            return error
+
+    @property
+    def steps(self) -> list[Step]:
+        """The steps of a history, each with its numbers and its fields; of one load the only step."""
+        if not self._of_steps:
+            return [Step(self._data, self.fields)]
+        return [Step(data, fields) for data, fields in zip(self._data["steps"], self._of_steps)]
+
+    def __repr__(self) -> str:
+        first, *rest = self.text.splitlines()
+        lines = [line for line in rest if line.split()[0] in _SHOWN]
+        return "\n".join([first, *lines[:len(_SHOWN)]])
 
     @property
     def converged(self) -> bool:
@@ -88,10 +184,14 @@ class Solution(Result):
         return not self.message and self["status"] == "converged"
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes all fields of the cells with pressure: .csv, .h5 or .vti."""
+        """Writes all fields of the cells with pressure: .csv, .h5, .vti, or .npz."""
         if self._handle is None:
             raise InputError("write: a solution that was pickled or copied has arrays, but no files of them; allowed: the one "
                              "that solve() returned, in its process")
+        if os.fspath(file).endswith(".npz"):
+            rows = self.fields.pressure != 0
+            np.savez(file, **{name: field[rows] for name, field in self.fields.items()})  # type: ignore[arg-type]
+            return
         if _hdf5.is_h5py_needed(file):
             _hdf5.write(file, self.fields)
             return
@@ -145,27 +245,28 @@ def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float
     >>> solution.fields["pressure"].shape
     (48, 48)
     """
-    return solve_assigned(scene, assignments(overrides), accuracy=accuracy, progress=progress)
+    return solve_assigned(scene, (), accuracy=accuracy, progress=progress, overrides=overrides)
 
 
 def solve_assigned(scene: Scene, words: Sequence[str], *, accuracy: float = 0.0,
-                   progress: Callable[[int, float], object] | None = None) -> Solution:
-    """As solve(), with the overrides in the form of --set: "load.moment_ratio=0.5"."""
-    text, name = text_of(scene)
-    encoded = [_library.encoded(word) for word in words]
+                   progress: Callable[[int, float], object] | None = None, overrides: Mapping[str, Any] = {}) -> Solution:
+    """As solve(), with further overrides in the form of --set: "load.moment_ratio=0.5"."""
     called = _Progress(progress)
     pointer = ctypes.c_void_p()
     in_main = threading.current_thread() is threading.main_thread()
-    # Python drops an exception that a handler raises inside the library's callback, so this handler stores it.
-    before = signal.signal(signal.SIGINT, called.interrupt) if in_main else None
-    try:
-        status = _library.function("solve")(
-            None if text is None else _library.encoded(text), _library.encoded(name), len(encoded),
-            (ctypes.c_char_p * len(encoded))(*encoded), accuracy, called.function, None, _library.byref(pointer))
-        message = _library.message() if status != _library.OK else ""
-    finally:
-        if in_main:
-            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+    with prepared(scene, overrides) as (text, name, assigned):
+        encoded = [_library.encoded(word) for word in (*assigned, *words)]
+        text_and_name = None if text is None else _library.encoded(text), _library.encoded(name)
+        # Python drops an exception that a handler raises inside the library's callback, so this handler stores it.
+        before = signal.signal(signal.SIGINT, called.interrupt) if in_main else None
+        try:
+            status = _library.function("solve")(
+                *text_and_name, len(encoded), (ctypes.c_char_p * len(encoded))(*encoded), accuracy, called.function, None,
+                _library.byref(pointer))
+            message = _library.message() if status != _library.OK else ""
+        finally:
+            if in_main:
+                signal.signal(signal.SIGINT, before or signal.SIG_DFL)
     if called.error is not None:
         if pointer.value:
             _library.function("solution_free")(pointer)

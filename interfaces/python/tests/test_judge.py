@@ -81,6 +81,40 @@ class CheckTest(unittest.TestCase):
             self.assertEqual(by_h5py.why, slipstick.check(SPHERE, theirs, twist=1.0).why)
             self.assertFalse(by_h5py.good)
 
+    def test_columns_of_other_objects(self):
+        """The same numbers are the same verdict, whatever holds them and by which common names."""
+        field = {name: values for name, values in exact_field().items() if name in ("x1", "x2", "pressure", "q1", "q2")}
+        others = dict(zip(field, ("X [mm]", "Y [mm]", "p", "tau_x", "tau_y")))
+        renamed = {others[name]: values * (1e3 if name in ("x1", "x2") else 1) for name, values in field.items()}
+        flat = {name: values.ravel() for name, values in field.items()}
+        axes = field | {"x1": field["x1"][:, 0], "x2": field["x2"][0]}
+        objects = [renamed, flat, axes, np.rec.fromarrays(list(flat.values()), names=list(flat))]
+        if importlib.util.find_spec("pandas"):
+            import pandas
+            objects += [pandas.DataFrame(flat), pandas.DataFrame({name: values.ravel() for name, values in renamed.items()})]
+        if importlib.util.find_spec("xarray"):
+            import xarray
+            data = xarray.Dataset({name: (("x1", "x2"), axes[name]) for name in ("pressure", "q1", "q2")},
+                                  {name: axes[name] for name in ("x1", "x2")})
+            objects += [data, data.transpose("x2", "x1").rename(x1="x", x2="y")]
+        right = slipstick.check(SPHERE, field)
+        for same in objects:
+            found = slipstick.check(SPHERE, same)
+            self.assertEqual(found.keys(), right.keys())  # judged on the scene's grid, not as points of a mesh
+            self.assertAlmostEqual(found.moment_error, right.moment_error, places=12)
+
+    def test_a_vector_and_a_mesh_are_read_as_one(self):
+        field = {name: values.ravel() for name, values in exact_field().items()}
+        vector = {"x": field["x1"], "y": field["x2"], "p": field["pressure"], "traction": np.stack([field["q1"], field["q2"]], axis=1)}
+        vector["traction"] = np.column_stack([vector["traction"], -field["pressure"]])
+        found = slipstick.check(SPHERE, vector)
+        self.assertEqual((found.verdict, found.kind), ("good", "nodes"))
+
+    def test_unknown_columns_are_answered_with_the_known_ones(self):
+        for field in ({"a": np.zeros(3)}, np.zeros((3, 5)), None):
+            with self.assertRaisesRegex(slipstick.InputError, "no x1, x2, pressure, q1, q2; .* allowed: columns x1, x2"):
+                slipstick.check(SPHERE, field)
+
     def test_loops(self):
         """The exact loop in the scene's units is good; a loop with another stiffness is not."""
         exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
@@ -137,6 +171,9 @@ class FilesTest(unittest.TestCase):
         file.write_text(GATE.format(1e-2) + GATE.format(1e-7).replace('"twist"', '"tight"'))
         self.assertEqual([gate.outcome for gate in slipstick.gate(file).gates], ["passed", "failed"])
         self.assertEqual([gate.id for gate in slipstick.gate(file, only=["tight"]).gates], ["tight"])
+        self.assertTrue(slipstick.assert_gates(file, only=["twist"]).passed)
+        with self.assertRaisesRegex(AssertionError, "^tight: "):
+            slipstick.assert_gates(file)
 
     def test_study(self):
         file = self.folder / "study.toml"

@@ -55,6 +55,25 @@ class PackageTest(unittest.TestCase):
         for name in slipstick.__all__:
             self.assertTrue(name == "__version__" or getattr(slipstick, name).__doc__, name)
 
+    def test_typed_attributes_are_those_of_results(self):
+        """The names that type checkers see are names of results."""
+        solution = slipstick.solve(slipstick.scene("paper"), grid__cells=[24, 24])
+        typed = set(slipstick.Solution.__annotations__) - {"message", "text"}
+        self.assertGreater(len(typed), 15)
+        self.assertLessEqual({name for name in typed if not name.startswith("_")}, set(solution))
+        self.assertLessEqual(set(slipstick.Fields.__annotations__), set(solution.fields))
+
+    def test_exact_offers_its_functions(self):
+        names = {name for name, value in vars(slipstick.exact).items()
+                 if getattr(value, "__module__", "") == "slipstick.exact" and not name.startswith("_")}
+        self.assertEqual(set(slipstick.exact.__all__), names)
+
+    def test_the_program_finds_the_files_of_the_package(self):
+        run = subprocess.run([sys.executable, "-B", "-m", "slipstick", "solve", "convergence/scenes/cone.toml", "--model", "exact"],
+                             capture_output=True, text=True, cwd="/")
+        self.assertEqual((run.returncode, run.stdout[:5]), (0, "cone:"))
+        self.assertIn("is the file of the package", run.stderr)
+
     def test_the_program_comes_with_it(self):
         run = subprocess.run([sys.executable, "-B", "-m", "slipstick", "--version"], capture_output=True, text=True)
         self.assertEqual((run.returncode, run.stdout.strip()), (0, slipstick.__version__))

@@ -218,6 +218,52 @@ class SolveTest(unittest.TestCase):
         solution = slipstick.solve(scene)
         self.assertEqual([step.name for step in solution.steps], ["on", "back"])
         self.assertAlmostEqual(solution.steps[1].twist_angle / solution.steps[0].twist_angle, -1, delta=1e-6)
+        area = np.prod(solution.cell_size)
+        for copied in (solution, pickle.loads(pickle.dumps(solution))):
+            for step in copied.steps:  # the fields of each step carry its own moment
+                fields = step.fields
+                self.assertAlmostEqual((fields.x1 * fields.q2 - fields.x2 * fields.q1).sum() * area / step.moment, 1, places=9)
+            np.testing.assert_array_equal(copied.steps[-1].fields.q1, solution.fields.q1)
+        self.assertEqual(repr(solution.steps[1])[:12], "Step('back':")
+        exact = slipstick.solve(scene, solver__model="exact")
+        self.assertEqual([step.twist_angle for step in exact.steps], [exact.twist_angle])
+
+    def test_a_history_too_long_to_keep_its_fields_says_so(self):
+        scene = {name: part for name, part in SPHERE.items() if name != "load"}
+        scene["step"] = [{"normal": 1000.0, "moment_ratio": sign * 0.5} for sign in (1, -1) * 4]
+        scene["grid"] = {"cells": [1024, 1024], "extent": [0.04, 0.04]}  # 8 steps of 9 fields take 576 MiB
+        solution = slipstick.solve(scene)
+        with self.assertRaisesRegex(slipstick.InputError, "at most 512 MiB; slipstick solve --fields"):
+            solution.steps[0].fields
+
+    def test_one_load_is_one_step(self):
+        solution = slipstick.solve(SPHERE)
+        self.assertIs(solution.steps[0].fields, solution.fields)
+
+    def test_height_maps_may_be_arrays(self):
+        """A paraboloid as an array is the sphere, in a scene and as an override."""
+        spacing, cells = 2e-5, 64
+        at = spacing * (np.arange(cells) - (cells - 1) / 2)
+        heights = (at[:, None]**2 + at**2) / (2 * 0.018)
+        scene = SPHERE | {"grid": {"cells": [cells, cells]}}
+        scene["upper"] = {"shape": "height_map", "file": heights, "spacing": [spacing, spacing], "young_modulus": 210e9,
+                          "poisson_ratio": 0.3}
+        sphere = slipstick.solve(SPHERE, grid__cells=[cells, cells], grid__extent=[cells * spacing] * 2)
+        mapped = slipstick.solve(scene)
+        self.assertAlmostEqual(mapped.twist_angle / sphere.twist_angle, 1, delta=1e-9)
+        halved = slipstick.solve(scene, upper__file=heights / 2)  # twice the radius
+        self.assertAlmostEqual(halved.contact_radius / mapped.contact_radius, 2**(1 / 3), delta=0.01)
+
+    def test_scenes_of_the_package(self):
+        """Each is a file with a line about it, and solve takes it."""
+        listed = slipstick.scenes()
+        self.assertIn("paper", listed)
+        self.assertEqual(len(repr(listed).splitlines()), len(listed))
+        for name, line in listed.items():
+            self.assertTrue(slipstick.scene(name).is_file() and 10 < len(line) < 180, f"{name}: {line}")
+        self.assertAlmostEqual(slipstick.solve(slipstick.scene("paper"), solver__model="exact").twist, slipstick.exact.twist(0.9), 12)
+        with self.assertRaisesRegex(slipstick.InputError, "no scene papre; the nearest name is paper"):
+            slipstick.scene("papre")
 
     def test_fields_outlive_the_solution_and_are_no_copies(self):
         solution = slipstick.solve(SPHERE)
@@ -244,10 +290,14 @@ class SolveTest(unittest.TestCase):
         named = slipstick.solve(SPHERE | {"name": "<script>"})
         self.assertIn("&lt;script&gt;", named._repr_html_())
         self.assertIn("twist_angle", dir(solution))
-        with self.assertRaises(AttributeError):
+        self.assertEqual(len(repr(solution).splitlines()), 5)
+        with self.assertRaisesRegex(AttributeError, "no twist_angel; the nearest name is twist_angle"):
             solution.twist_angel
-        with self.assertRaises(KeyError):
-            solution.fields["q3"]
+        with self.assertRaisesRegex(KeyError, "no field presure; the nearest name is pressure"):
+            solution.fields["presure"]
+        with self.assertRaisesRegex(AttributeError, "no field presure; the nearest name is pressure"):
+            solution.fields.presure
+        self.assertIs(solution.fields.q1, solution.fields["q1"])
 
     def test_write(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -255,10 +305,26 @@ class SolveTest(unittest.TestCase):
             solution.write(Path(folder) / "fields.csv")
             header = (Path(folder) / "fields.csv").read_text().splitlines()[0].split(",")
             self.assertEqual(header, list(solution.fields))
+            solution.write(Path(folder) / "fields.npz")
+            with np.load(Path(folder) / "fields.npz") as stored:
+                self.assertEqual(stored["q1"].size, np.count_nonzero(solution.fields.pressure))
             solution.write(Path(folder) / "fields.h5")
             self.assertTrue((Path(folder) / "fields.h5").read_bytes().startswith(b"\x89HDF"))
             with self.assertRaisesRegex(slipstick.InputError, "allowed: .h5"):
                 solution.write(Path(folder) / "fields.doc")
+
+    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "matplotlib is not installed")
+    def test_plot(self):
+        import matplotlib
+        matplotlib.use("agg")
+        for model in ("auto", "exact"):
+            solution = slipstick.solve(SPHERE, solver__model=model)
+            figure = solution.plot()
+            titles = [axis.get_title() for axis in figure.axes if axis.get_title()]
+            self.assertEqual(titles[:2], ["pressure (MPa)", "traction |q| (MPa)"])
+            self.assertIn("stick", titles[2])
+            drawn = figure.axes[0].collections[0].get_array()
+            self.assertAlmostEqual(np.nanmax(drawn) * 1e6 / solution.fields.pressure.max(), 1, places=12)
 
     @unittest.skipUnless(importlib.util.find_spec("pandas"), "pandas is not installed")
     def test_frames(self):
