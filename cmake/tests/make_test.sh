@@ -50,6 +50,7 @@ check bench "slipstick slipstick_python slipstick_benchmarks"
 check references slipstick
 check install "slipstick slipstick_c"
 check python slipstick_python
+check dataset "slipstick slipstick_python"
 check reference reference
 check build all
 
