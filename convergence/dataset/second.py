@@ -1,6 +1,6 @@
 """The second path of each exact value: integrals over the friction bound, in 36 decimal digits (mpmath).
 
-No function of slipstick is called, and no formula of it is used but the definitions in docs/theory.md. A bound f(r), over its
+It calls no function of slipstick and takes only the definitions from docs/theory.md. A bound f(r), over its
 reference p0 and with a = 1, is a superposition of constant bounds on discs: with y = sqrt(1 - r^2) and f = F(y),
     f(r) = F(0) + integral_0^y F'(x) dx,
 and twist, moment and traction are the same superposition of Tresca's closed forms. The flat and the rounded punch are
@@ -43,7 +43,7 @@ class Discs:
         if self.kink is not None and self.kink < Y:
             cuts.append(mp.asin(self.kink / Y))
         cuts += [mp.pi / 2 - mp.asin(w / Y) for w in (*near, *(c * 10**k for k in range(6))) if w < Y / 2]
-        return mp.quad(integrand, sorted(list(map(mp.sqrt, cuts)))) + self.edge * part(mpf(1), Y)
+        return mp.quad(integrand, sorted(mp.sqrt(angle) for angle in cuts)) + self.edge * part(mpf(1), Y)
 
     def height(self, c, complement):
         """H(c) = integral of f(r)/sqrt(r^2 - c^2) dr."""
@@ -66,12 +66,12 @@ class Discs:
 
     def _moments(self, order):
         cuts = [mpf(0), *([mp.asin(self.kink)] if self.kink is not None else []), mp.pi / 2]
-        return mp.quad(lambda u: 2 * u * self.slope(mp.sin(u * u), mp.cos(u * u)) * mp.cos(u * u)**(order + 1), list(map(mp.sqrt, cuts)))
+        return mp.quad(lambda u: 2 * u * self.slope(mp.sin(u * u), mp.cos(u * u)) * mp.cos(u * u)**(order + 1), [mp.sqrt(x) for x in cuts])
 
     def bound(self, r):
         y = mp.sqrt((1 - r) * (1 + r))
         cuts = sorted({mpf(0), y} | ({self.kink} if self.kink is not None and self.kink < y else set()))
-        return mp.quad(lambda u: 2 * u * self.slope(u * u, mp.sqrt(1 - u**4)), list(map(mp.sqrt, cuts))) + self.edge
+        return mp.quad(lambda u: 2 * u * self.slope(u * u, mp.sqrt(1 - u**4)), [mp.sqrt(x) for x in cuts]) + self.edge
 
     def traction(self, r, c, complement):
         if r >= c:
