@@ -186,6 +186,11 @@ def number(result, name):
     return result[name]
 
 
+def mesh_uncertainty(resolved):
+    """Absolute; without the part that the length of the steps costs, which belong to the scene."""
+    return resolved.get("mesh", resolved["absolute"]) or 0.0
+
+
 def scene_rows(name, grids):
     """grids: of each factor, scene, result, fields, recomputed."""
     rows, size = [], {}
@@ -201,9 +206,9 @@ def scene_rows(name, grids):
         coarse, fine, finest = (number(grids[factor][1], key) for factor in (1, 2, 3))
         value = fine + (fine - coarse) / (2**ORDER - 1)  # as extrapolate()
         resolved = grids[2][1]["resolved"]
-        stated = resolved["absolute"] if resolved["number"] == key else 0.0
+        stated = mesh_uncertainty(resolved) if resolved["number"] == key else 0.0
         least = 1e-8 * size[key]
-        rows.append(row(name, "extrapolated to cells along x1", 0.0, key, value, max(abs(value - coarse), stated or 0.0) + least, unit,
+        rows.append(row(name, "extrapolated to cells along x1", 0.0, key, value, max(abs(value - coarse), stated) + least, unit,
                         "estimated", "a finer grid", finest, abs(finest - fine) + least, si=1, si_unit=unit))
     return rows
 
@@ -234,7 +239,7 @@ def write_hdf5(file, scene, result, fields, extrapolated):
     with h5py.File(file, "w", libver="earliest", track_order=False) as h5:
         h5.attrs["scene"], h5.attrs["certificate_gap"] = scene.text, result["certificate"]["gap"]
         h5.attrs["mesh_uncertainty_of"] = result["resolved"]["number"]
-        h5.attrs["mesh_uncertainty"] = result["resolved"]["absolute"] or 0.0
+        h5.attrs["mesh_uncertainty"] = mesh_uncertainty(result["resolved"])
         h5.attrs["axes"] = "x1 along the first index, x2 along the second; x3 into the lower body; q on the lower body"
         grid, coarse = h5.create_group("grid"), h5.create_group("extrapolated")
         for group, m, h in ((grid, scene.n, scene.h), (coarse, [n // 2 for n in scene.n], [2 * h for h in scene.h])):

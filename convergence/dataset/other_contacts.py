@@ -154,12 +154,13 @@ def limit_surfaces(program, small, pool):
     for profile in ("hertz",) if small else ("hertz", "flat_punch", "constant", "power:4"):
         a, bound = scales(profile)
         load, limit = BOUNDS[profile].load(), BOUNDS[profile].limit()
+        error = 2e-9 if profile == "flat_punch" else 1e-12  # doubles close to the edge do not hold an infinite pressure's digits
         for found in LimitSurface(Curve(profile), 5 if small else 33).loads[1:-1]:
             again = sliding(profile, found.centre)
             for name, value, other, unit, factor, si_unit in (
                     ("force", found.force, again[0], "mu W", load * bound * a**2, "N"),
                     ("moment", found.moment, again[1], "M_lim", limit * bound * a**3, "N m")):
-                rows.append(row(profile, "centre", found.centre, name, value, 1e-11, unit, "estimated", "polar quadrature", other, 1e-9,
+                rows.append(row(profile, "centre", found.centre, name, value, error, unit, "estimated", "polar quadrature", other, 1e-11,
                                 si=factor, si_unit=si_unit))
     about = "Force and moment together under which all of the contact slides, turning about a point at the distance `centre` (over a)."
     return [Table("limit_surfaces", "Limit surfaces", about, "Goyal, Ruina and Papadopoulos 1991", rows)]

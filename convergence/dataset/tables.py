@@ -31,8 +31,9 @@ COLUMNS = {
     "radius": "r/a, a double; empty where the value belongs to the whole contact",
     "quantity": "name of the value", "value": "normalised", "error": "largest absolute error of `value`",
     "unit": "unit of `value`", "si": "the value in SI units; empty where it has none", "si_error": "largest absolute error of `si`",
-    "si_unit": "unit of `si`", "known": "proven: enclosed by ball arithmetic; stated: computed in doubles, with the error that the "
-    "program states; closed: a closed form in 36 digits; estimated: an error estimate of a quadrature",
+    "si_unit": "unit of `si`",
+    "known": "proven: enclosed by ball arithmetic; stated: computed in doubles, with the error that the program states; closed: a closed "
+    "form in 36 digits; estimated: an error estimate, of a quadrature or a mesh",
     "second": "the second path that recomputed the value", "difference": "of the second path from `value`, absolute",
     "second_error": "largest absolute error of the second path",
 }
