@@ -93,7 +93,7 @@ class TableTest(ReadTest):
         self.assertEqual(read(path, kind="faces").kind, "faces")
 
     def test_forces(self):
-        points, cells = MESHES["unstructured"]
+        points, cells = MESHES["polar"]
         pressure, traction = solution(points)
         areas = nodal_areas([nodes for _, nodes in cells], points)
         forces = {"x1": points[:, 0], "x2": points[:, 1], "f1": traction[:, 0] * areas, "f2": traction[:, 1] * areas,

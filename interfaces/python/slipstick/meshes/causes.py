@@ -110,7 +110,8 @@ def _other_component(examined: Examined, request: Request, solve: Solve, wrong: 
             continue
         ratio = (weights @ (shear[:, k] * np.sign(wanted[:, k]))) / (weights @ np.abs(wanted[:, k]))
         unit = round(np.log10(max(abs(ratio), 1e-30)) / 3)
-        if unit and _explained(examined, _distance(examined, examined.judge.reference, shear * np.where(np.arange(2) == k, 10.0**(-3 * unit), 1))):
+        in_one_unit = shear * np.where(np.arange(2) == k, 10.0**(-3 * unit), 1)
+        if unit and _explained(examined, _distance(examined, examined.judge.reference, in_one_unit)):
             yield f"q{k + 1} is in another unit than q{2 - k}: it is {10.0**(3 * unit):g} times as large"
 
 
@@ -311,7 +312,8 @@ def _other_kernel(examined: Examined, request: Request, solve: Solve, wrong: set
         return
     judge = examined.judge
     kernels = judge.kernels([examined.values], KERNELS)[0]
-    displacements = {name: kernels.displacement(other, **mistake) for name, (other, mistake) in _hypotheses(examined, request, kernels).items()}
+    displacements = {name: kernels.displacement(other, **mistake)
+                     for name, (other, mistake) in _hypotheses(examined, request, kernels).items()}
     motions = {name: judge.rigid(kernels, displacement) for name, displacement in displacements.items()}
     angle = examined.number("slip_direction")
     reported = None if twist is None else examined.reported_of_half_spaces
@@ -385,7 +387,8 @@ def _fitted_spring(examined: Examined, kernels: Kernels) -> float:
 
 def _unfinished(examined: Examined, request: Request, solve: Solve, wrong: set[str]) -> Iterator[str]:
     """Errors that carry no load and have no symmetry."""
-    if not examined.right.radial or not wrong & {"tractions", "stick_motion"} or wrong & {"normal_load", "pressure", "contact_radius", "moment", "force"}:
+    loads = {"normal_load", "pressure", "contact_radius", "moment", "force"}
+    if not examined.right.radial or not wrong & {"tractions", "stick_motion"} or wrong & loads:
         return
     radius = np.hypot(*examined.judge.x.T)
     outward = examined.judge.x / np.maximum(radius, 1e-300)[:, None]

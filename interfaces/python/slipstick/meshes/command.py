@@ -77,9 +77,9 @@ def _examined(request: Mapping[str, Any]) -> tuple[Examined, list[str]]:
     if held:
         examined.notes.append(f"bodies held at {request['held_at'][0]:g} m turn {percent(held / right.twist)} less")
     if examined.explained:
+        off = examined.reported / examined.right_twist - 1
         examined.notes.append(f"a sphere turns {percent(curved)} further than the half-space in its place: this explains "
-                              f"{percent(examined.explained)} of the twist, which is {percent(examined.reported / examined.right_twist - 1)} "
-                              "too high for half-spaces")
+                              f"{percent(examined.explained)} of the twist, which is {percent(off)} too high for half-spaces")
     return examined, notes
 
 
@@ -158,7 +158,8 @@ def _right(request: Mapping[str, Any], springs: Mapping[str, Any], cells: Option
 
 
 def _solved(request: Mapping[str, Any], keys: Mapping[str, Any], cells: Optional[int]) -> Right:
-    return solved_answer(request["scene"], request["overrides"], keys, cells)
+    words = [word for word in request["overrides"] if not ("load.moment" in keys and word.startswith("load.moment_ratio="))]
+    return solved_answer(request["scene"], words, keys, cells)
 
 
 def _signed(field: ContactField, right: Right, given: bool) -> tuple[ContactField, list[str]]:
@@ -183,6 +184,7 @@ def _numbers(examined: Examined) -> dict[str, Any]:
     return {"normal_load": load, "moment": moment, "force": force.tolist(), "contact_radius": examined.judge.radius(examined.values),
             "stick_radius": examined.judge.stick_radius(examined.values),
             "right_stick_radius": examined.judge.stick_radius(examined.judge.reference), "right_twist": examined.right_twist,
+            **_or_reason("gap", examined.gap, missing), "right_gap": examined.right_gap,
             **_or_reason("given_slip_direction", _given_slip_direction(examined), "the field has no slip where it should slip"),
             **_or_reason("twist", examined.reported, "not given"), **_or_reason("twist_of_tractions", twist, missing)}
 
@@ -225,6 +227,8 @@ def _text(result: Mapping[str, Any], examined: Examined) -> str:
                                      ("stick radius", result["stick_radius"], "m", result["right_stick_radius"])):
         if value is not None:
             text += line(name, f"{value:.6g} {unit} (right: {right:.6g})")
+    if result["gap"] is not None:
+        text += line("gap", f"{result['gap']:.2g} (right answers on this mesh: up to {result['right_gap']:.2g}); it is not judged")
     if result["given_slip_direction"] is not None:
         text += line("slip given", f"{result['given_slip_direction']:.2g} degrees from the traction in the mean; it is not judged, since "
                                    "programs count the slip of pressing, too")

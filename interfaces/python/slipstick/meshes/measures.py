@@ -13,7 +13,7 @@ from .patches import Patches
 from .right import Right
 
 #: A row sticks if |q| is below this part of its friction bound; on coarse meshes means of turned vectors lose a hundredth.
-_STICKS = 0.98
+_STICKS, _ABOUT_STICKS = 0.98, (0.97, 0.99)
 #: A row surely sticks in the right answer below this part of the bound, and slips above the other one.
 _SURELY_STICKS, _SURELY_SLIPS = 0.95, 0.999
 #: Rows with less than this part of the largest pressure say nothing about friction.
@@ -141,11 +141,17 @@ class Judge:
 
         return self.right.contact_radius * gyration(field[:, 0]) / gyration(self.reference[:, 0])
 
-    def stick_radius(self, field: Array) -> float:
-        """The radius of the circle with the area of the rows that stick, m."""
+    def stick_radius(self, field: Array, sticks_below: float = _STICKS) -> float:
+        """The radius of the circle with the area of the rows that stick, below this part of their friction bound, m."""
         bound = self.law.bound(field[:, 0])
-        sticks = (field[:, 0] > 0) & (np.hypot(field[:, 1], field[:, 2]) < _STICKS * bound)
+        sticks = (field[:, 0] > 0) & (np.hypot(field[:, 1], field[:, 2]) < sticks_below * bound)
         return float(np.sqrt(self.weights @ sticks / np.pi))
+
+    def stick_radius_steps(self, field: Array) -> float:
+        """How far the stick radius of a field is off where slightly other rows stick, over the contact radius: a ring of rows sticks or
+        slips as a whole."""
+        own = self.stick_radius(self.reference)
+        return max(abs(self.stick_radius(field, part) - own) for part in _ABOUT_STICKS) / self.right.contact_radius
 
     def friction_ratio(self, field: Array) -> Array:
         """|q| over its bound in the rows that slip in the right answer and carry in both."""
@@ -184,6 +190,15 @@ class Judge:
         angle = np.arctan2(np.abs(slip[:, 0] * own[:, 1] - slip[:, 1] * own[:, 0]), np.sum(slip * own, axis=1))
         unsure = motion.scatter * np.hypot(*motion.at(kernels.places[rows]).T) * kernels.weights[rows]
         return float(np.degrees(weights @ angle / weights.sum())), float(np.degrees(unsure.sum() / weights.sum()))
+
+    def gap(self, field: Array, kernels: Kernels, motion: Motion, displacement: Array) -> float:
+        """Coulomb's gap at the chosen rows: the sum of bound |s| - q.s over the sum of |q| |motion|, where s is the slip. It is zero
+        where tractions fulfil the law of friction and elasticity together."""
+        rigid = motion.at(kernels.places)
+        slip, own = rigid - displacement, kernels.own
+        bound = self.law.bound(field[self.chosen, 0])
+        lost = kernels.weights @ (bound * np.hypot(*slip.T) - np.sum(own * slip, axis=1))
+        return float(lost / max(kernels.weights @ (np.hypot(*own.T) * np.hypot(*rigid.T)), 1e-300))
 
     def angle_of_given_slip(self, traction: Array, slip: Array) -> Optional[float]:
         """The mean angle between the slip (n, 2) that a file has and the traction (n, 2) where the right answer slips, weighted with the
@@ -226,7 +241,9 @@ class Judge:
                 found["displacement_of_tractions"] = float(
                     np.hypot(*(motion.displacement - right.displacement)) / np.hypot(*right.displacement))
             found["stick_motion"] = motion.scatter
-            angle = self.slip_angle(kernels, motion, kernels.displacement(self.bodies))
+            displacement = kernels.displacement(self.bodies)
+            found["gap"] = self.gap(field, kernels, motion, displacement)
+            angle = self.slip_angle(kernels, motion, displacement)
             if angle is not None:
                 found["slip_direction"], found["unsure_direction"] = angle
         return found

@@ -21,8 +21,8 @@ Fields = Callable[[Array], Array]
 _GAP = 5.0
 #: A triangle may bridge a hole where its longest edge is longer than this many times those of its neighbours.
 _BRIDGE = 1.5
-#: Four points are on a circle if the cotangents of two opposite angles add up to less than this.
-_ON_CIRCLE = 1e-4
+#: Four points are on a circle if the cotangents of two opposite angles add up to less than this: files may have six digits only.
+_ON_CIRCLE = 1e-3
 #: Each triangle is divided into the square of this number of equal ones, at whose centres integrals take their values.
 _PARTS = 4
 

@@ -84,6 +84,8 @@ class Examined:
     reported: Optional[float]
     right_twist: float
     explained: float
+    gap: Optional[float]
+    right_gap: float
     across: float
     notes: list[str] = with_default(default_factory=list)
 
@@ -145,9 +147,11 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     fields = [values, *answers.values()]
     kernels: list[Any] = [None] * len(fields) if bodies is None else judge.kernels(fields)
     found, *measured = [judge.measure(*each) for each in zip(fields, kernels)]
+    gap, right_gap = found.pop("gap", None), max(each.get("gap", 0.0) for each in measured)
     worst = {name: max(abs(each.get(name, 0.0)) for each in measured) for name in _FLOORS}
     loaded = reference[:, 0] > 0
     across = right.contact_radius / np.sqrt(patches.weights @ loaded / max(1, np.count_nonzero(loaded)))
+    worst["stick_radius"] = max(worst["stick_radius"], *map(judge.stick_radius_steps, answers.values()))
     found["coverage"], worst["coverage"] = _coverage(field, judge, ways, across)
     right_twist, explained = right.twist - held, 0.0
     if reported is not None:
@@ -164,7 +168,7 @@ def examine(field: ContactField, right: Right, others: Mapping[str, Right], law:
     judged = [Judged(name, value, allowances[name], worst[name], without.get(name, "")) for name, value in found.items()]
     motion = None if kernels[0] is None else judge.motion(kernels[0])
     return Examined(field, right, values, patches, judge, kernels[0], motion, allowances, judged, reported, right_twist, explained,
-                    across)
+                    gap, right_gap, across)
 
 
 def _carrying(judge: Judge, values: Array) -> Array:
