@@ -16,6 +16,7 @@ from pathlib import Path
 import fclib
 import fields
 import other_contacts
+import stresses
 import tables
 from mpmath import mpf
 from tables import COLUMNS
@@ -28,7 +29,7 @@ VERSION, YEAR = "1.0", "2026"
 NAME = f"slipstick-reference-{VERSION}"
 LICENCE = "https://creativecommons.org/licenses/by/4.0/"
 NUMBERS = ("at", "radius", "value", "error", "si", "si_error", "difference", "second_error")
-BUILDERS = (tables.constants, tables.first_loading, tables.loops, other_contacts.coated, other_contacts.tangential,
+BUILDERS = (tables.constants, tables.first_loading, tables.loops, stresses.stresses, other_contacts.coated, other_contacts.tangential,
             other_contacts.frictional, other_contacts.ellipses, other_contacts.limit_surfaces)
 
 

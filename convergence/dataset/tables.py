@@ -159,6 +159,12 @@ def first_state(profile, given, at, c, complement):
             "moment": bound.moment(c, complement) / bound.load(), "tangent_stiffness": mpf(16) / 3 * c**3}
 
 
+def bonded_part(profile, state):
+    """The part of the traction at which slip begins, while nothing slips; 1 after that."""
+    bound = BOUNDS[profile]
+    return state["moment"] * bound.load() / bound.moment(mpf(1), mpf(0)) if state["stick_complement"] == 0 else mpf(1)
+
+
 def ends_of(state):
     """The stick ratio and its complement, each from the smaller of both."""
     c, complement = state["stick_ratio"][0], state["stick_complement"][0]
@@ -184,7 +190,7 @@ def load_rows(program, radii, job):
     states.append(row(profile, given, at, "energy_lost_per_cycle", *energy, unit, "stated", "scipy",
                       second.energy_lost(profile, c, complement), 2e-14 * energy[0], si=factor, si_unit=si_unit))
     c, complement = again["stick_ratio"], again["stick_complement"]
-    part = again["moment"] * bound.load() / bound.moment(c, complement) if complement == 0 else 1
+    part = bonded_part(profile, again)
     unit, factor, si_unit = factors["traction"]
     with mp.workdps(TRACTION_DIGITS):
         found = [part * bound.traction(mpf(r), +c, +complement) for r in radii]  # + rounds to these digits

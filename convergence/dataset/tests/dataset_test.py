@@ -22,6 +22,7 @@ import dataset  # noqa: E402
 import fclib  # noqa: E402
 import fields  # noqa: E402
 import second  # noqa: E402
+import stresses  # noqa: E402
 import tables  # noqa: E402
 from slipstick import exact  # noqa: E402
 
@@ -98,6 +99,14 @@ class Small(unittest.TestCase):
             self.assertEqual(len(dataset.disagreements(table)), 1)
         table.rows = [tables.row("hertz", "moment_ratio", 0.5, "twist", 0.5, 1e-15, "1", "stated", "mpmath", 0.5, 1e-20)]
         self.assertEqual(dataset.disagreements(table), [])
+
+    def test_stresses_below_the_sphere(self):
+        """Values at M/M_lim = 0.9 that were computed apart from this code."""
+        c = second.mpf("0.49589505221577806827")
+        for place, shear in ((("0.8", "0.1"), (0.427151030273768, -0.418178612053512)),
+                             (("1.2", "0.2"), (0.0565132462292529, -0.175180470713968))):
+            found = stresses.superposed("hertz", c, *map(second.mpf, place))
+            np.testing.assert_allclose(np.array(found, dtype=float), shear, rtol=1e-13)
 
     def test_superpositions_of_discs_and_of_punches_agree(self):
         c, lacks = second.mpf("0.375"), second.mpf("0.625")

@@ -1,0 +1,66 @@
+"""The table of stresses below a contact in torsion: the package's, and again as a superposition of bonded discs (mpmath)."""
+
+from functools import partial
+
+from mpmath import mp, mpf
+from second import DIGITS, punches
+from tables import RADII, Table, bonded_part, ends_of, first_state, row, units, with_error
+
+STATES = [("moment_ratio", 0.4), ("moment_deficit", 0.1)]
+DEPTHS = (1 / 16, 1 / 4, 1 / 2, 1.0)
+POINTS = [(r, z) for r in (*RADII[1::5], 1.25) for z in DEPTHS]
+
+
+def disc(s, r, z):
+    """sigma_theta_z and sigma_r_theta over G phi of a bonded disc of radius s that turns by phi, outward normal: with Z = z + i s and
+    R = sqrt(r^2 + Z^2), a potential in complex form (docs/theory.md)."""
+    Z = mp.mpc(z, s)
+    R = mp.sqrt(r * r + Z * Z)
+    w = (R - Z) / r
+    return (4 / mp.pi * (-mp.im(w) - s * mp.re(1 - Z / R) / r), -4 / mp.pi * (-mp.im(w * w) / 2 - s * mp.re(w * w / R)))
+
+
+def weight(profile, s):
+    """-H'(s) of sphere, cone and flat punch."""
+    if profile == "flat_punch":
+        return punches.B(s) / s
+    return (mp.ellipe if profile == "hertz" else mp.ellipk)(1 - s * s) / s
+
+
+def superposed(profile, c, r, z):
+    """Over mu p0: discs of radii c to a, and the edge's of the flat punch."""
+    cuts = sorted({c, mpf(1), *(x for x in (r - z, mpf(r), r + z) if c < x < 1)})
+    found = [mp.quad(lambda s: weight(profile, s) * disc(s, r, z)[i], cuts) / 2 for i in (0, 1)]
+    edge = mp.pi / 4 if profile == "flat_punch" else 0
+    return [value + edge * part for value, part in zip(found, disc(mpf(1), r, z))]
+
+
+def profile_rows(points, job):
+    from slipstick import exact
+    profile, (given, at) = job
+    mp.dps = DIGITS
+    state = exact.states(profile=profile, **{given: at})
+    again = first_state(profile, given, at, *ends_of({name: (mpf(float(state[name])),) for name in ("stick_ratio", "stick_complement")}))
+    part, c, rows = bonded_part(profile, again), again["stick_ratio"], []
+    unit, factor, si_unit = units(profile)["traction"]
+    with mp.workdps(26):
+        for r, z in points:
+            def stress(x, r=r, z=z):
+                found = exact.stresses(r, z, profile=profile, **{given: x})
+                return [float(found.tz), float(found.rt)]
+            second_path = [part * value for value in superposed(profile, +c, mpf(r), mpf(z))]
+            for name, value, other in zip(("stress_theta_z", "stress_r_theta"), with_error(stress, at), second_path):
+                error = value[1] + mpf("4e-15")  # absolute: near a zero of the stress terms cancel
+                rows.append(row(f"{profile}; depth {z!r}", given, at, name, value[0], error, unit, "stated", "mpmath", other,
+                                abs(other) * mpf(10)**-18 + mpf(10)**-20, radius=r, si=factor, si_unit=si_unit))
+    return rows
+
+
+def stresses(program, small, pool):
+    profiles = ("hertz",) if small else ("hertz", "cone", "flat_punch")
+    jobs = [(profile, state) for profile in profiles for state in (STATES[1:] if small else STATES)]
+    points = POINTS[::7] if small else POINTS
+    rows = [row for rows in pool.map(partial(profile_rows, points), jobs, chunksize=1) for row in rows]
+    about = ("Stresses by torsion in a body at r/a and the depth z/a of `case`, first loading; theta z and r theta components, z the "
+             "outward normal, so that theta z is the traction at the surface.")
+    return [Table("stresses", "Torsion: stresses below the surface", about, "Reissner and Sagoci 1944; docs/theory.md", rows)]
