@@ -19,7 +19,7 @@ from .verdict import Examined, Judged, percent
 _EXPLAINS = 0.35
 #: A mesh of bodies around a fine contact may turn this much further than half-spaces, and have this much shear along the radius.
 _OF_BODIES = 0.02
-#: Rings of the contact over which values are averaged; and the part of a shear that friction while pressing has all around the axis:
+#: The fewest rings of the contact over which values are averaged; and the part of a shear that friction while pressing has all around the axis:
 #: other mistakes leave cosines of the angle.
 _RINGS, _ALL_ROUND, _NO_SYMMETRY = 8, 0.7, 0.5
 #: Ratios of moments and twists count as equal up to this difference.
@@ -149,8 +149,9 @@ def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, w
 def _part_all_round(examined: Examined, radius: Array, values: Array) -> float:
     """The part of values (n) that is the same all around the axis: the sum of the means of rings over the sum of all sizes."""
     weights, edge = examined.judge.weights, examined.right.contact_radius
-    ring = np.minimum((_RINGS * radius / edge).astype(int), _RINGS)
-    means = np.bincount(ring, weights * values, minlength=_RINGS + 1)
+    rings = max(_RINGS, int(2 * examined.across))  # friction may change its sign from ring to ring of the mesh
+    ring = np.minimum((rings * radius / edge).astype(int), rings)
+    means = np.bincount(ring, weights * values, minlength=rings + 1)
     total = weights @ np.abs(values)
     return float(np.abs(means).sum() / total) if total > 0 else 0.0
 
