@@ -137,7 +137,8 @@ def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, w
     radius = np.hypot(*examined.judge.x.T)
     outward = examined.judge.x / np.maximum(radius, 1e-300)[:, None]
     shear = examined.values[:, 1:]
-    if _part_all_round(examined, radius, np.sum(shear * outward, axis=1)) < _ALL_ROUND:
+    rings = max(_RINGS, int(2 * examined.across))  # friction may change its sign from ring to ring of the mesh
+    if _part_all_round(examined, radius, np.sum(shear * outward, axis=1), rings) < _ALL_ROUND:
         return
     without = shear - np.sum(shear * outward, axis=1)[:, None] * outward
     tractions = _number(examined, "tractions")
@@ -146,10 +147,9 @@ def _pressed_with_friction(examined: Examined, request: Request, solve: Solve, w
         yield "friction was on while pressing: half-spaces of one material then have no shear along the radius"
 
 
-def _part_all_round(examined: Examined, radius: Array, values: Array) -> float:
+def _part_all_round(examined: Examined, radius: Array, values: Array, rings: int = _RINGS) -> float:
     """The part of values (n) that is the same all around the axis: the sum of the means of rings over the sum of all sizes."""
     weights, edge = examined.judge.weights, examined.right.contact_radius
-    rings = max(_RINGS, int(2 * examined.across))  # friction may change its sign from ring to ring of the mesh
     ring = np.minimum((rings * radius / edge).astype(int), rings)
     means = np.bincount(ring, weights * values, minlength=rings + 1)
     total = weights @ np.abs(values)
