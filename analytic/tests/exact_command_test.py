@@ -4,6 +4,7 @@ import json
 import math
 from decimal import Decimal
 from math import pi
+from pathlib import Path
 
 from program_run import ProgramTest
 
@@ -133,6 +134,14 @@ class Exact(ProgramTest):
         self.near(table["pressure"][0]["value"], 1.5 * math.sqrt(1 - 0.09), estimate["pressure"][0]["value"])
         self.assertEqual(table["table"]["contact_radius"], 3e-3)
         self.text(state, says=["+/-", "estimates, without proof"])
+
+    def test_a_table_may_have_comments_blanks_and_other_line_ends(self):
+        state = f"--moment-ratio 0.6 --profile file:{self.hertz_table(33)}"
+        plain = self.json(state)
+        _, first, *others = Path("hertz.csv").read_text().splitlines()
+        self.write("hertz.csv", "\n".join(["\ufeff# measured", "", " radius , pressure\r", f" {first}\r", "# here", *others]))
+        full = self.json(state)
+        self.assertEqual((full["twist"], full["table"]), (plain["twist"], plain["table"]))
 
     def test_a_table_of_few_points_is_refused_or_has_no_estimate(self):
         self.refused(f"--moment-ratio 0.1 --profile file:{self.hertz_table(9)}", "--profile", "hertz.csv",
