@@ -88,7 +88,8 @@ TEST(PlaneScene, GoesOnFromKeptPoints) {
   const auto load = [](const Json& runs) {
     return Json{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", runs}};
   };
-  convergence::Progress progress(3, 3.0);
+  convergence::Progress progress;
+  progress.begin_runs(3, 3.0, 3);
   const Json first = bench::measure_load(options, load(Json::array({run_on(16)})), progress);
   const Json both = bench::measure_load(options, load(Json::array({run_on(16), run_on(16, 1e-4)})), progress);
   ASSERT_EQ(both["points"].size(), 2U);
