@@ -1,5 +1,6 @@
 """program_test.py PROGRAM: output, files and exit codes of the commands."""
 
+import itertools
 import json
 import math
 import os
@@ -18,6 +19,12 @@ except ImportError:  # without jsonschema
     schemas = None
 
 SMALL = ("--set", "grid.cells=[24,24]")
+# Scenes with an exact answer: the profile, the size of its body, and the normal load.
+EXACT = (("paper", "hertz", "0.018", "1000"), ("cone", "cone", "0.01", "200"), ("flat_punch", "flat_punch", "0.0005", "1000"))
+LOADS = {"hertz": 2 * math.pi / 3, "cone": math.pi, "flat_punch": 2 * math.pi}  # over p0 a^2
+# Over p0; r: over a.
+PRESSURES = {"hertz": lambda r: math.sqrt((1 - r) * (1 + r)), "cone": lambda r: math.acosh(1 / r),
+             "flat_punch": lambda r: 1 / math.sqrt((1 - r) * (1 + r))}
 
 
 def solve(scene, *words):
@@ -134,15 +141,19 @@ class Program(ProgramTest):
             self.assertGreater(Path("figure.svg").stat().st_size, 10000)
 
     def test_solves_exactly_with_the_numbers_of_exact(self):
-        solved = self.result(*solve("cone", "--model", "exact"))
-        # 210 GPa and nu = 0.3 on both sides.
-        exact = self.result("exact", "--profile", "cone", "--moment-ratio", "0.5", "--normal-load", "200", "--shape",
-                            "0.01", "--friction", "0.1", "--effective-modulus", "115384615384.61538",
-                            "--shear-modulus", "40384615384.615385")
-        self.assertEqual(solved["method"], "exact")
-        self.assertEqual(solved["twist"], exact["twist"])
-        for key in ("contact_radius", "approach", "stick_radius", "moment_limit", "moment", "twist_angle"):
-            self.assertAlmostEqual(solved[key] / exact["units"][key], 1, delta=1e-14, msg=key)
+        for (name, profile, shape, load), ratio in itertools.product(EXACT, ("0.1", "0.5", "0.9", "0.99")):
+            solved = self.result(*solve(name, "--model", "exact", "--set", f"load.moment_ratio={ratio}"))
+            # 210 GPa and nu = 0.3 on both sides.
+            exact = self.result("exact", "--profile", profile, "--moment-ratio", ratio, "--normal-load", load, "--shape", shape,
+                                "--friction", "0.1", "--effective-modulus", "115384615384.61538",
+                                "--shear-modulus", "40384615384.615385")
+            self.assertEqual((solved["method"], solved["model"]["left_out"][0]["what"]), ("exact", "the grid"))
+            for key in ("moment_ratio", "stick_ratio", "twist"):
+                self.assertEqual(solved[key], exact[key])
+            for key in ("contact_radius", "approach", "stick_radius", "moment_limit", "moment", "twist_angle"):
+                self.assertAlmostEqual(solved[key] / exact["units"][key], 1, delta=1e-14, msg=key)
+        uncoupled = self.result(*solve("dissimilar", "--model", "exact", "--set", "contact.coupling=none"))
+        self.assertEqual([each["what"] for each in uncoupled["model"]["left_out"]], ["the grid", "K13, K23"])
         self.assertEqual(self.run_program(*solve("cone", "--set", "solver.model=exact", "--quiet")), "")
         self.run_program(*solve("cone", "--model", "exact"), says="exact solution")
         self.run_program(*solve("cone", "--set", "solver.model=exact", "--model", "auto"), says="24 x 24 cells")
@@ -158,8 +169,25 @@ class Program(ProgramTest):
         self.run_program(*solve("paper", "--fields", "fields.csv"))
         header = Path("fields.csv").read_text().splitlines()[0]
         self.assertTrue(header.startswith("x1,x2,pressure,q1,q2,slip1,slip2,stick"), header)
-        self.run_program(*solve("flat_punch", "--model", "exact", "--fields", "exact.csv"))
-        self.assertEqual(Path("exact.csv").read_text().splitlines()[0], "x1,x2,pressure,q1,q2,stick")
+
+    def test_exact_fields_are_those_of_exact_at_the_cells_in_contact(self):
+        for name, profile, *_ in EXACT:
+            result = self.result(*solve(name, "--model", "exact", "--set", "grid.cells=[24,20]", "--fields", "exact.csv"))
+            header, *lines = Path("exact.csv").read_text().splitlines()
+            self.assertEqual(header, "x1,x2,pressure,q1,q2,stick")
+            rows = [tuple(map(float, line.split(","))) for line in lines]
+            self.assertGreater(len(rows), 200)  # of 480
+            radii = [math.hypot(*row[:2]) / result["contact_radius"] for row in rows]
+            exact = self.result("exact", "--profile", profile, "--moment-ratio", str(result["moment_ratio"]), "--radius",
+                                ",".join(map(repr, radii)))
+            p0 = result["normal_load"] / (LOADS[profile] * result["contact_radius"]**2)
+            for (x1, x2, p, q1, q2, stick), r, traction in zip(rows, radii, exact["traction"], strict=True):
+                within = 1e-12 * (1 + 1 / (1 - r))  # by rounding of r
+                self.assertAlmostEqual(p / (p0 * PRESSURES[profile](r)), 1, delta=within)
+                q = 0.1 * p0 * traction["value"]
+                self.assertAlmostEqual(q1 / q, -x2 / math.hypot(x1, x2), delta=within)
+                self.assertAlmostEqual(q2 / q, x1 / math.hypot(x1, x2), delta=within)
+                self.assertEqual(stick, float(r < result["stick_ratio"]))
 
     def test_errors_beside_an_infinite_peak_are_null(self):
         result = self.result(*solve("cone"))

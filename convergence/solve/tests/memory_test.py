@@ -4,6 +4,7 @@ prediction, in doubles a cell, are in solver/elasticity/elasticity.cpp and solve
 memory_test.py PROGRAM --measure prints measured ones."""
 
 import itertools
+import os
 import subprocess
 import sys
 import unittest
@@ -76,6 +77,14 @@ class Memory(ProgramTest):
             self.run_program(*solve, "--memory-limit", f"{needed + 2:.0f}")
             self.run_program(*solve, "--memory-limit", f"{needed - 2:.0f}", code=2,
                              says=["rough_sphere.toml", "grid.cells = [512, 512]", "this needs", "--memory-limit"])
+
+    def test_a_table_that_does_not_fit_is_named(self):
+        Path("heights.csv").touch()
+        os.truncate("heights.csv", 512 << 20)  # takes no room on the disk
+        text = (SCENES / "paper.toml").read_text().replace('shape = "sphere"\nradius = 0.018 ',
+                                                           'shape = "height_map"\nfile = "heights.csv"\nspacing = [1e-5, 1e-5] ')
+        self.write("map.toml", text.replace("[grid]\ncells = [128, 128]", ""))
+        self.run_program("solve", "map.toml", "--memory-limit", "100MB", code=2, says=["heights.csv", "512 MiB", "95.4 MiB"])
 
     @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
     def test_what_is_refused_is_not_taken(self):

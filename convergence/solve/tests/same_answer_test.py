@@ -323,12 +323,23 @@ class SameAnswer(ProgramTest):
                 self.assertTrue(TRANSLATIONS in self.left_out(result) and QUADRANT not in self.left_out(result))
                 self.assertLessEqual(result["certificate"]["force"], 1e-15)
 
+    def test_of_a_height_map_is_that_of_its_body(self):
+        """A line of a map is a row of cells along x2; its deepest point is a cell's centre."""
+        spacing = np.array([5e-5, 4e-5])
+        x1, x2 = (step * (np.arange(n) - (n - 1) / 2) for step, n in zip(spacing, (33, 25)))
+        heights = x1[:, None]**2 / 0.072 + x2**2 / 0.036
+        body = self.solved(ELLIPSOID, TIGHT, "grid.cells=[33, 25]", f"grid.extent={(spacing * (33, 25)).tolist()}")
+        for unit, words in ((1.0, ""), (1e-6, 'unit = "um"\n')):
+            np.savetxt("heights.csv", heights / unit + 1.0, delimiter=",", fmt="%.17g")
+            self.assert_same(self.solved(f"{MAP}spacing = {spacing.tolist()}\n{words}", TIGHT), body, SAME)
+
     def test_pressure_of_a_file_needs_the_whole_grid(self):
         """It need not have the mirrors of the surface that is said to cause it."""
         rows = [f"{(i - 7.5) * 62.5e-6},{(j - 7.5) * 62.5e-6},{1e9 + 1e7 * i}" for i in range(16) for j in range(16)]
         self.write("p.csv", "\n".join(["x1,x2,pressure", *rows, ""]))
         settings = ("contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[16, 16]", "grid.extent=[1e-3, 1e-3]",
                     "upper.ends_at_grid_edge=true", "load.normal=1075")
-        result, _ = self.solved(SPHERE, *settings)
+        result, fields = self.solved(SPHERE, *settings)
+        self.assertAlmostEqual(np.abs(fields["pressure"] / (1e9 + 1e7 * (fields["x1"] / 62.5e-6 + 7.5)) - 1).max(), 0, delta=1e-11)
         self.assertEqual(self.left_out(result), [COUPLING])  # it turns about a centre of its own
         self.assertEqual(self.solved(SPHERE, *settings, "solver.model=full")[0]["solver_bytes"], result["solver_bytes"])

@@ -146,6 +146,38 @@ class ShapesTest(Words):
         self.run_program("solve", "scene.toml", code=2, says=("lower.shape", "nearest"))
 
 
+class KeysTest(Words):
+    def test_the_last_override_holds_and_a_wrong_value_below_it_is_none(self):
+        result = self.solved(SHORT_SCENE)
+        self.assertEqual(result["name"], "scene")  # the file's
+        result = self.solved(SHORT_SCENE.replace("friction = 0.1", 'friction = "x"'), *(word for each in (
+            "load.normal=5", "contact.friction=0.2", "grid.cells=[8, 9]", "name=other", "load.normal=6", "contact.pressure=hertz",
+            'solver.operator="dense"') for word in ("--set", each)))
+        self.assertAlmostEqual(result["normal_load"], 6, delta=0.1)  # of Hertz's pressure at the centres of few cells
+        for key, value in (("name", "other"), ("friction", 0.2), ("cells", [8, 9]), ("pressure", "hertz"),
+                           ("operator", "dense")):
+            self.assertEqual(result[key], value, key)
+
+    def test_a_rigid_body_has_no_modulus(self):
+        """a^3 = 3 W R (1 - nu^2)/(4 E), of the elastic body. Both may be rigid below a layer."""
+        steel = "young_modulus = 210e9\npoisson_ratio = 0.3\n"
+        rigid = SHORT_SCENE.replace(steel, "rigid = true\n", 1)
+        exact = (3 * 1000 * 0.018 * 0.91 / (4 * 210e9))**(1 / 3)
+        found = self.solved(rigid, "--model", "exact", "--set", "contact.coupling=none")["contact_radius"]
+        self.assertAlmostEqual(found / exact, 1, delta=1e-14)
+        layer = f"[lower.layer]\nthickness = 1e-4\n{steel}"
+        self.solved(rigid.replace(steel, "rigid = true\n") + "extent = [1.6e-3, 1.6e-3]\n" + layer)
+
+    def test_roughness_has_a_period_of_four_longest_waves(self):
+        """And overrides find a shape by its place."""
+        rough = ROUGH.replace("[lower]", "")
+        text = SHORT_SCENE.replace("[contact]", f"[[lower.shape]]\n{rough}[contact]") + "extent = [1.2e-3, 1.2e-3]\n"
+        usual, same, other = (self.solved(text, "--set", f"lower.shape[0].{key}")
+                              for key in ("seed=3", "period=1.6e-3", "period=2e-3"))
+        self.assertEqual(usual["twist_angle"], same["twist_angle"])
+        self.assertNotEqual(usual["twist_angle"], other["twist_angle"])
+
+
 class DoubtsTest(Words):
     def doubted(self, text, *words, options=()):
         result = self.solved(text, *options)

@@ -199,6 +199,47 @@ cycles = 3
         Path("binary.toml").write_bytes(b"\x89HDF\r\n\x1a\n\0\0\0\0")
         self.run_program("solve", "binary.toml", code=2, says=["binary.toml", "binary file"])
 
+    def test_pressure_files_that_do_not_fit(self):
+        """On 4 x 4 cells of 0.25 mm."""
+        settings = ("contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]")
+        scene = SHORT_SCENE.replace("normal = 1000\n", "")
+        good = "0.000125,0.000125,1e9\n"
+        for rows, setting, *says in (
+                ("", "contact.pressure_file=no.csv", "no.csv", "cannot be read"),
+                (good, "load.normal=1000", "load.normal = 1000 N", "62.5", "p.csv"),
+                (good + "0.000125,-0.000125,-1\n", "name=a", "p.csv", "row 2", "-1", "zero or positive"),
+                ("0.0002,0.000125,1e9\n", "name=a", "p.csv", "row 1", "0.0002", "not a cell's centre"),
+                ("0.000625,0.000125,1e9\n", "name=off the grid", "not a cell's centre"),
+                ("0.125,0.125,1e9\n", "name=mm for m", "not a cell's centre"),
+                ("0.000125,0.000125,0\n", "name=a", "zero everywhere"),
+                (good + good, "name=a", "p.csv", "row 2")):
+            self.write("p.csv", "x1,x2,pressure\n" + rows)
+            self.refused(scene, *says, settings=(*settings, setting))
+        self.write("p.csv", "x1,x2,pressure\n" + good)
+        for more in ("name=any load", "load.normal=62.5"):  # 1e9 Pa on (0.25 mm)^2
+            sets = (("--set", each) for each in (*settings, "load.moment_ratio=0", more))
+            self.run_program("solve", "scene.toml", *itertools.chain(*sets))
+
+    def test_height_maps_that_do_not_fit(self):
+        def mapped(*maps):
+            maps = ", ".join(f'{{shape = "height_map", file = "{file}", spacing = {spacing}}}' for file, spacing in maps)
+            return SHORT_SCENE[:SHORT_SCENE.index("[grid]")].replace(SPHERE, f"shape = [{maps}]")
+
+        self.write("square.csv", "1,2\n3,4\n")
+        self.write("wide.csv", "3e-6,2e-6,3e-6\n2e-6,1e-6,2e-6\n")
+        square, wide = ("square.csv", "[1e-5, 2e-5]"), ("wide.csv", "[1e-5, 2e-5]")
+        for text, settings, *says in (
+                (mapped(square), ["grid.cells=[3, 2]"], "grid.cells = [3, 2]", "[2, 2]", "square.csv"),
+                (mapped(square), ["grid.extent=[1, 1]"], "grid.extent", "spacing"),
+                (mapped(wide, square), [], "square.csv", "2 x 2 heights", "allowed: 2 x 3", "wide.csv"),
+                (mapped(wide, ("wide.csv", "[1e-5, 1e-5]")), [], "allowed: 2 x 3, 1e-05 x 2e-05 apart")):
+            self.refused(text, *says, settings=settings)
+        for hole in ("", " ", "nan", "NaN"):
+            self.write("hole.csv", f"1,2,3\n4,{hole},6\n")
+            self.refused(mapped(("hole.csv", wide[1])), "hole.csv", "row 2, column 2", "no height", "a finite number at every point")
+        self.write("hole.csv", "1,2,3\n4,5,6\n,8,9\n10,11,12\n")  # 4 x 3 points about the origin
+        self.refused(mapped(("hole.csv", wide[1])), "row 3, column 1 (x1 = 5e-06, x2 = -2e-05): no height")
+
     def test_grids_that_do_not_fit(self):
         pair = '[{shape = "sphere", radius = 1}, {shape = "sphere", radius = 1}]'
         summed = SHORT_SCENE.replace(SPHERE, f"shape = {pair}")
