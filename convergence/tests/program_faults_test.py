@@ -29,10 +29,14 @@ def limit_memory():
     resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))  # 64 threads' stacks take 512 MB of it
 
 
+def become_nobody():
+    if os.getuid() == 0:
+        os.setuid(65534)
+
+
 def limit_processes():
     resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
-    if os.getuid() == 0:
-        os.setuid(65534)  # the limit does not hold for root
+    become_nobody()  # the limit does not hold for root
 
 
 def nobody_reads():
@@ -136,6 +140,38 @@ class ProgramFaults(ProgramTest):
                 self.assertEqual(file.read_text() if file.exists() else None, old)
                 self.assertEqual(list(self.folder.rglob("*.part*")), [])
 
+    def test_a_file_keeps_its_permissions_and_a_link_or_device_its_place(self):
+        os.symlink("old.json", "link.json")
+        for limit, code in ((None, 0), (limit_files(100), 2)):
+            self.write("old.json", "old")
+            os.chmod("old.json", 0o600)
+            complaint = self.ends((*SMALL, "--quiet", "--json", "link.json"), code, limit)
+            self.assertEqual(Path("old.json").read_text() == "old", code == 2)
+            self.assertEqual(Path("old.json").stat().st_mode & 0o777, 0o600)
+            self.assertTrue(Path("link.json").is_symlink())
+        self.assertIn(f"link.json: {TOO_LARGE}", complaint)
+        self.ends((*SMALL, "--quiet", "--json", "/dev/null"), 0)
+        self.assertTrue(Path("/dev/null").is_char_device())
+        complaint = self.ends((*SMALL, "--quiet", "--json", "/dev/full"), 2)
+        for part in ("/dev/full: cannot be written: No space left", "make room"):
+            self.assertIn(part, complaint)
+        longest = 250 * "n" + ".json"
+        self.ends((*SMALL, "--quiet", "--json", longest), 0)
+        json.loads(Path(longest).read_text())
+        self.assertEqual(list(self.folder.rglob("*.part*")), [])
+
+    def test_a_folder_that_may_not_be_written_is_said(self):
+        """Root may write anywhere, so that another user tries."""
+        os.mkdir("closed", 0o555)
+        os.chmod(".", 0o755)
+        for words in ((*SMALL, "--json", "closed/a.json"), ("study", "study.toml", "--output", "closed")):
+            try:
+                complaint = self.ends(words, 2, become_nobody)
+            except PermissionError:
+                self.skipTest("no other user may run the program where it is")
+            self.assertIn("cannot be written: Permission denied", complaint)
+            self.assertEqual(list(Path("closed").iterdir()), [])
+
     def test_a_study_on_a_full_disk_stops_and_goes_on(self):
         study = ("study", "study.toml", "--output", "points", "--json", "result.json")
         complaint = self.ends(study, 2, limit_files(1024))
@@ -158,6 +194,7 @@ class ProgramFaults(ProgramTest):
             complaint = self.ends(words, 2)
             self.assertTrue(complaint.startswith(f"slipstick: {name}"), complaint)
             self.assertIn("cannot be written: ", complaint)
+            self.assertRegex(complaint, "name a file in that folder" if name.split()[-1] in (".", "d.csv") else "make its folder|plain")
             self.assertEqual(Path("out").read_text(), "")
 
     def test_threads_that_cannot_start_are_said(self):
