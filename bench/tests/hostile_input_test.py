@@ -11,6 +11,11 @@ from pathlib import Path
 
 from program_run import PROGRAM, SHORT_SCENE, ProgramTest
 
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
 RADIUS = 4.89e-4
 EXTENT = 8 / 3 * RADIUS  # of the contact and a cell around it
 
@@ -272,6 +277,48 @@ class HostileInput(ProgramTest):
         for name, text, says in (damage for damage in DAMAGES if damage[0] in READERS):
             self.write(name, text)
             self.refused(name, text[:300], says)
+
+    @unittest.skipIf(h5py is None, "without h5py")
+    def test_datasets_are_looked_at_before_memory_is_taken(self):
+        """Only numbers of the file itself are read."""
+        def refused(make, *says):
+            with h5py.File("heights.h5", "w") as file:
+                make(file)
+            self.run_program("solve", "map.toml", "--set", 'upper.file="heights.h5"', code=2, says=("heights.h5", *says))
+
+        for options, *says in (
+                ({"shape": (3,)}, "dataset height", "has 1 dimensions; allowed: 2"), ({"shape": (2, 2, 2)}, "has 3 dimensions"),
+                ({"shape": (0, 3)}, "0 x 3 values; allowed: from 1 to "),
+                ({"shape": (1 << 20, 1 << 20), "chunks": (1000, 1)}, "1048576 x 1048576 values"),
+                ({"shape": (1, 1), "dtype": h5py.string_dtype()}, "holds no numbers"),
+                ({"shape": (1, 1), "dtype": h5py.vlen_dtype(float)}, "holds no numbers"),
+                ({"shape": (1, 1), "dtype": [("a", "f8")]}, "holds no numbers"),
+                ({"shape": (2, 2), "dtype": "f8", "external": [("/dev/zero", 0, h5py.h5f.UNLIMITED)]}, "has its data elsewhere")):
+            refused(lambda file: file.create_dataset("height", **options), *says)
+        refused(lambda file: file.create_group("height"), "is no dataset")
+        refused(lambda file: file.__setitem__("height", h5py.ExternalLink("/etc/hostname", "/x")), "is a link")
+        refused(lambda file: None, "no such dataset")
+
+    @unittest.skipIf(h5py is None, "without h5py")
+    def test_a_file_that_crashes_the_library_is_named(self):
+        """It divides by the size of a chunk in the file. Newer versions of the library refuse a zero there."""
+        with h5py.File("heights.h5", "w") as file:
+            file.create_dataset("height", (0x5A18, 1), dtype="i4", chunks=(0x5A17, 1))
+        whole, size = Path("heights.h5").read_bytes(), b"\x17\x5a\0\0"
+        self.assertIn(size, whole)
+        Path("heights.h5").write_bytes(whole.replace(size, b"\0\0\0\0", 1))
+        said = self.run_program("solve", "map.toml", "--set", 'upper.file="heights.h5"', code=2)
+        self.assertRegex(said, "heights.h5: .*(does not survive|is no dataset)")
+
+    @unittest.skipIf(h5py is None, "without h5py")
+    def test_a_wrong_column_of_hdf5_is_named(self):
+        self.good("columns.h5")
+        with h5py.File("columns.h5", "a") as file:
+            file["pressure"][3] = math.nan
+        self.refused("columns.h5", "NaN", ("pressure", "allowed: a finite number"))
+        with h5py.File("columns.h5", "a") as file:
+            del file["pressure"]
+        self.refused("columns.h5", "no pressure", ("pressure", "no such dataset"))
 
     def test_what_is_nested_without_end_is_refused(self):
         """A value deep in brackets or in tables, which recursion would follow until the stack ends."""

@@ -102,7 +102,9 @@ class Program(ProgramTest):
     def test_what_has_no_place_or_kind_is_refused_before_the_solve(self):
         for option, file, *says in (("--figure", "f.jpg", "--figure", "f.jpg", ".svg, .pdf, .png"),
                                     ("--figure", "f-{step}.png", "--model=exact", "{step}", "last step"),
-                                    ("--loop", "loop.svg", "--loop", ".csv")):
+                                    ("--loop", "loop.svg", "--loop", ".csv"),
+                                    *(("--fields", name, name, ".h5, .hdf5, .csv, .vti")
+                                      for name in ("fields.txt", "fields", "fields.CSV", "fields.vtk", ".csv"))):
             options = [says.pop(0)] if says[0].startswith("--model") else []
             self.run_program(*solve("paper", option, file, *options, "--json", "refused.json"), code=2, says=says)
             self.assertFalse(Path("refused.json").exists(), option)

@@ -83,6 +83,7 @@ class Readers(unittest.TestCase):
                 ("empty_last_value", HEADER, self.joined(",", end=",")),
                 ("numpy_savetxt", "##\n# by hand\n# " + blanks, self.joined(" ", end="  # a cell")),
                 ("comments", "% MATLAB's\n" + HEADER, self.joined(",", end="\n%")),
+                ("marks", "\ufeff" + HEADER.replace("x1,x2", '"x1", x2 ') + "\r", self.joined(" , ", end="\r\n\r")),
                 ("fortran", blanks, [line.replace("e", "D") for line in self.joined(" ")]),
                 ("words", "note;" + HEADER.replace(",", ";"), ["a b;" + line for line in self.joined(";")])):
             with self.subTest(name):

@@ -158,6 +158,10 @@ class KeysTest(Words):
                            ("operator", "dense")):
             self.assertEqual(result[key], value, key)
 
+    def test_a_whole_number_that_no_double_holds_is_a_number_too(self):
+        result = self.solved(SHORT_SCENE, "--model", "exact", "--set", "load.normal=9223372036854775807")
+        self.assertEqual(result["normal_load"], 2.0**63)
+
     def test_a_rigid_body_has_no_modulus(self):
         """a^3 = 3 W R (1 - nu^2)/(4 E), of the elastic body. Both may be rigid below a layer."""
         steel = "young_modulus = 210e9\npoisson_ratio = 0.3\n"

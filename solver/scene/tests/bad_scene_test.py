@@ -81,6 +81,7 @@ BAD = [
     ("cells = [128, 96]", "cells = [128, 0]", [], "grid.cells", "a whole number from 1 to 65536"),
     ("cells = [128, 96]", "cells = [128]", [], "grid.cells", "[a, b], two numbers"),
     ("cells = [128, 96]", "cells = [128, 96, 3]", [], "grid.cells", "[a, b], two numbers"),
+    ("cells = [128, 96]", "cells = [9223372036854775807, 96]", [], "grid.cells", "a whole number from 1 to 65536"),
     ("cells = [128, 96]", "cells = 128", [], "grid.cells = 128", "[a, b], two numbers"),
     ("cells = [128, 96]", 'cells = ["a", "b"]', [], "grid.cells", "[a, b], two numbers"),
     ("extent = [0.0011, 0.0012]", "extent = [-1.0, 1.0]", [], "grid.extent", "positive and finite"),
