@@ -6,6 +6,7 @@ slipstick.solve    a scene, on a grid or exactly, with its fields as arrays
 slipstick.check    a verdict on tractions that another program computed
 slipstick.gate     numbers with bounds that they must keep, slipstick.assert_gates in tests
 slipstick.study    orders of convergence and error budgets
+slipstick.conformance  cases for the friction of simulators, with verdicts (import it by this name)
 slipstick.command  any other command of the program
 """
 from . import exact

@@ -48,7 +48,7 @@ def _force_law(gap: float) -> Any:
     return lambda t: np.copysign(1.0 - np.maximum(0.0, 1.0 - 4.0 * power * np.abs(t))**(1.0 / power), t)
 
 
-def _contact(given: dict[str, Any]) -> Contact:
+def contact_from(given: dict[str, Any]) -> Contact:
     exponent = given["radius_exponent"]
 
     def number(value: Optional[float]) -> float:  # JSON has no infinity
@@ -328,7 +328,7 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     request: name (of the scene), loop (the file), of_force, tolerance, strict; the columns load, motion and time (or an empty
     list); and groups: for each normal load its rows (first, one after the last) and its contact.
     """
-    contacts = [_contact(group) for group in request["groups"]]
+    contacts = [contact_from(group) for group in request["groups"]]
     paths = [_path(request, group, contact) for group, contact in zip(request["groups"], contacts)]
     tolerance, good, why, notes = request["tolerance"], True, "", []
     judgements = [judge(path, contact, tolerance) for path, contact in zip(paths, contacts)]

@@ -1,0 +1,158 @@
+"""The cause of a deviation in a case of slipstick.conformance."""
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._loop_path import Array, Path
+from .loops import explain
+from .loops import judge as judge_loop
+
+_NEAR = 0.03  # distance within which a number or a shape is a named one
+_LOOP_TOLERANCE = 0.01
+_LAWS = ("factor", "stiffness", "limit", "limit_and_stiffness", "elastic", "rigid", "spring_and_cap", "bilinear", "not_enlarged",
+         "unloads_without_slip", "equation_7", "other_profile", "exponential", "hyperbola", "dahl", "bouc_wen", "viscous", "regularised",
+         "stribeck", "delayed", "normal_load_drifts")
+_POWERS = {  # of the limit and of the stiffness over the normal load
+    "limit": {0.0: ("normal_load_ignored", "the limit does not depend on the normal load"),
+              1.0: ("constant_radius", "the limit goes like W: a contact radius that does not grow"),
+              5 / 4: ("hydroelastic_radius", "the limit goes like W^(5/4): the radius of an elastic foundation"),
+              3 / 2: ("cone", "the limit goes like W^(3/2), as that of a cone")},
+    "stiffness": {0.0: ("constant_stiffness", "the stiffness at rest does not depend on the normal load"),
+                  1 / 3: ("tangential_stiffness", "the stiffness at rest goes like W^(1/3), as the tangential one"),
+                  2 / 3: ("stiffness_like_a2", "the stiffness at rest goes like W^(2/3), the contact's area"),
+                  3 / 2: ("cone", "the stiffness at rest goes like W^(3/2), as that of a cone")}}
+_COMMON = ("unknown", "not_a_number")
+CAUSES = {
+    **{kind: (*_LAWS, *_COMMON) for kind in ("first-loading", "loops", "memory")},
+    "load-powers": (*dict.fromkeys(name for powers in _POWERS.values() for name, _ in powers.values()), "rigid", "wrong_power", *_COMMON),
+    "hold": ("creeps", "settles", "slides", *_COMMON),
+    "limit-surface": ("box", "ellipsoid", "diamond", "limits", "no_moment", "no_force", *_COMMON),
+    "normal-load": ("normal_load_ignored", "no_memory_of_load", "creeps", "rigid", *_COMMON),
+    "rates": ("grows_with_rate", "falls_with_rate", "creeps", "rigid", *_COMMON)}
+
+Cause = tuple[str, str]  # a name, and a sentence
+
+
+def kind_of(name: str) -> str:
+    return "hold" if name.startswith("hold") else name
+
+
+def sliding_loads(case: Any, data: Mapping[str, Array]) -> Array:
+    """Force and moment over their limits, a row for each run: its last."""
+    last = np.flatnonzero(np.append(np.diff(case.run), 1))
+    load = case.sphere.normal_load
+    return np.column_stack([data["force"][last] / (case.sphere.friction * load), data["moment"][last] / case.sphere.limit(load)])
+
+
+def deviation_cause(case: Any, data: Mapping[str, Array], numbers: list[float]) -> Cause:
+    """The cause of a response that is not green; numbers: of the case's measures."""
+    kind = kind_of(case.id)
+    with np.errstate(all="ignore"):
+        if kind == "load-powers":
+            return _power_cause(numbers)
+        if kind == "hold":
+            return _hold_cause(case, data)
+        if kind == "limit-surface":
+            return _surface_cause(case, data)
+        if kind == "normal-load":
+            return _normal_load_cause(case, data)
+        if kind == "rates":
+            return _rate_cause(case, data)
+        return _law_cause(case, data)
+
+
+def _law_cause(case: Any, data: Mapping[str, Array]) -> Cause:
+    """The wrong law that moments over twists follow."""
+    load = case.sphere.normal_load
+    twist, moment = data["twist"] / case.sphere.rotation(load), data["moment"] / case.sphere.limit(load)
+    if not 1e-9 < np.abs(moment).max() < 1e9:
+        return "unknown", "there is no moment" if not moment.any() else "the moment is in another unit"
+    if not 1e-9 < np.abs(twist).max() < 1e9:
+        return "rigid", "nothing turns below the limit"
+    path, contact = Path(case.time / case.time[-1], float(case.time[-1]), twist, moment), case.sphere.loop_contact
+    judgement = judge_loop(path, contact, _LOOP_TOLERANCE)
+    explain(judgement, path, contact, _LOOP_TOLERANCE)
+    return judgement.law or "unknown", judgement.why
+
+
+def _power_cause(numbers: list[float]) -> Cause:
+    stiffness, limit = numbers
+    off = {"limit": (limit, limit + 4 / 3), "stiffness": (stiffness, stiffness + 1)}
+    for name, (error, power) in off.items():  # a wrong limit first: it needs no presliding
+        if math.isnan(error):
+            return "rigid", f"the {name} is not a positive number under each load"
+        if abs(error) > 0.01:
+            near = min(_POWERS[name], key=lambda known: abs(known - power))
+            if abs(near - power) <= _NEAR:
+                return _POWERS[name][near]
+            return "wrong_power", f"the {name} goes like W^{power:.3f}"
+    return "unknown", "no power is off"
+
+
+def _hold_cause(case: Any, data: Mapping[str, Array]) -> Cause:
+    """By the motion in two halves of the hold."""
+    first, last = case.marks["held"]
+    motion = data[case.marks["motion"]]
+    halves = motion[(first + last) // 2] - motion[first], motion[last - 1] - motion[(first + last) // 2]
+    if abs(halves[1]) > 1.5 * abs(halves[0]) and abs(halves[1]) > case.marks["rate"]:
+        return "slides", "the contact slides faster and faster: its limit is below the load"
+    if abs(halves[1]) < 0.5 * abs(halves[0]):
+        return "settles", "the contact still moves, ever slower: a viscous part, or a load that came too fast"
+    return "creeps", "the contact creeps under a load below its limit: regularised friction"
+
+
+def _surface_cause(case: Any, data: Mapping[str, Array]) -> Cause:
+    loads, right = sliding_loads(case, data), sliding_loads(case, {"force": case.force, "moment": case.moment})
+    for column, name in enumerate(("force", "moment")):
+        if np.abs(loads[:, column]).max() < _NEAR:
+            other = ": a point of contact without a patch" if name == "moment" else ""
+            return f"no_{name}", f"sliding brings no {name}{other}"
+    own = np.array([loads[-1, 0], loads[0, 1]])  # under force alone, under moment alone
+    sphere, last = case.sphere, np.flatnonzero(np.append(np.diff(case.run), 1))
+    load = sphere.normal_load
+    # The motion is normal to the surface in the plane of both ratios.
+    normal = np.column_stack([data["displacement"][last] * sphere.friction * load, data["twist"][last] * sphere.limit(load)])
+    shapes = {"box": ("the limits of force and moment do not know of each other", np.sign(normal)),
+              "ellipsoid": ("an ellipsoid through both limits", normal / np.hypot(*normal.T)[:, None]),
+              "diamond": ("the parts of both limits sum up to 1", np.eye(2)[normal.argmax(axis=1)]), "": ("", right)}
+    distance = {name: np.abs(loads / own - shape).max() for name, (_, shape) in shapes.items()}
+    name = min(distance, key=lambda each: distance[each])
+    if name and distance[name] <= _NEAR:
+        return name, shapes[name][0]
+    if (np.abs(own - 1) > 0.02).any():
+        return "limits", f"force and moment reach {own[0]:.3g} and {own[1]:.3g} of their limits"
+    return "unknown", "force and moment follow no known surface"
+
+
+def _normal_load_cause(case: Any, data: Mapping[str, Array]) -> Cause:
+    loaded, back, fallen = case.marks["phases"]
+    twist, top = data["twist"], (loaded + back) // 2
+    before, exact_slip = twist[loaded], (case.twist[fallen] - case.twist[back]) * twist[loaded] / case.twist[loaded]
+    if abs(before) < _NEAR * case.twist[loaded]:
+        return "rigid", "nothing turns below the limit"
+    rise, fall, slip = twist[top] - twist[loaded], twist[back] - twist[top], twist[fallen] - twist[back]
+    size = _NEAR * abs(before)
+    if rise < -size and fall > size:
+        return "no_memory_of_load", "the twist follows the normal load: it turns back as the load rises"
+    if rise > size and fall > size:
+        return "creeps", "the contact turns on while the normal load is above its first value"
+    if abs(slip) < _NEAR * exact_slip and abs(rise) <= size:
+        return "normal_load_ignored", "a smaller normal load brings no slip"
+    return "unknown", f"the slip is {slip / exact_slip:.3g} of the exact one"
+
+
+def _rate_cause(case: Any, data: Mapping[str, Array]) -> Cause:
+    slow = case.run == 0
+    for name, cause in (("twist", ("rigid", "nothing turns below the limit")), ("moment", ("unknown", "there is no moment"))):
+        if np.abs(data[name]).max() < 0.01 * np.abs(getattr(case, name)).max():
+            return cause
+    size = {name: np.abs(data[name][~slow]).sum() / max(np.abs(data[name][slow]).sum(), 1e-300) for name in ("moment", "twist")}
+    if size["twist"] < 0.99:
+        return "creeps", "the slow loop turns farther: the contact creeps"
+    if size["moment"] > 1:
+        return "grows_with_rate", "the moment grows with the rate: a viscous part, or regularised friction"
+    return "falls_with_rate", "the moment falls with the rate, or comes late"
