@@ -202,19 +202,6 @@ TEST(OracleHistory, EndsWithGrossSlip) {
   }
 }
 
-TEST(OracleHistory, SaysWhyNoTheoryHolds) {
-  Scene two_lines = pushed(without_contraction(example("paper")), {{1000.0, 50.0}, {1000.0, 60.0}});
-  two_lines.steps[1].force = {60.0, 0.0};
-  Scene heavier = twisted(example("paper"), {0.5, 0.5});
-  heavier.steps[1].normal = 1100.0;
-  for (const auto& [scene, says] :
-       {std::pair(two_lines, "several lines"), {heavier, "while the normal load changes"}}) {
-    const OracleAnswer answer = find_oracle(scene);
-    EXPECT_FALSE(answer.oracle || answer.out_of_range);
-    EXPECT_THAT(answer.reason, HasSubstr(says));
-  }
-}
-
 /// Spence (1968): against a rigid body with nu = 0 and mu = 0.2986 half of the radius sticks, under any load.
 TEST(OracleHistory, PressingDissimilarBodiesSticksWithinTheSameRatio) {
   Scene scene = without_contraction(example("flat_punch"));
