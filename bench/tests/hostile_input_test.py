@@ -108,6 +108,7 @@ DAMAGES = [
         ("1.0", "-1", "positive"),
         ("below", "bellow = 1\nbelow", ":5", "gate[0].bellow", "nearest known one is gate[0].below"),
         ("scene =", "study = 'a.toml'\nscene =", "one of scene and study"),
+        ("scene =", "set = 1\nscene =", "gate[0].set = 1", "a table"),
         ('scene = "sphere.toml"\n', "", "one of scene and study"),
         ("below", "bellow", ":5", "gate[0].bellow", "nearest known one is gate[0].below"),
         ('id = "a"\n', "", "gate[0].id"),

@@ -246,7 +246,8 @@ class Files(MadeGates):
         self.assertIn("--only papper-*: no gate has this id; the nearest is paper-", text)
 
     def test_are_listed_without_a_run(self):
-        gates = (gate("x", id="size", below=2e-5) + gate("y", id="scene", above=1, below=2, scene="no.toml") + "set = { 'a.b' = 3 }\n"
+        gates = (gate("x", id="size", below=2e-5) + gate("y", id="scene", above=1, below=2, scene="no.toml")
+                 + "set = { 'a.b' = 3, \"load.force\" = [1e-8, 2.0], load.name = \"a b\", on = true }\n"
                  + gate("z", id="other", of="before.json", within=0.1))
         Path("gates.toml").write_text(gates)
         text = self.run_program("gate", "gates.toml", "--output", "points", "--list")
@@ -260,7 +261,8 @@ class Files(MadeGates):
         self.assertIn("broken.toml:2", broken["why"])
         self.assertEqual([size[key] for key in ("id", "result", "quantity", "below", "basis")],
                          ["size", "work.json", "x", 2e-5, "measured 1e-6"])
-        self.assertEqual([scene[key] for key in ("scene", "set", "above")], ["no.toml", ["a.b=3"], 1])
+        self.assertEqual([scene[key] for key in ("scene", "above", "line")], ["no.toml", 1, 7])
+        self.assertCountEqual(scene["set"], ["a.b=3", "load.force=[1e-08, 2]", "load.name='a b'", "on=true"])
         self.assertFalse({"value", "outcome", "factor"} & scene.keys())
 
     def test_many_on_one_large_result_share_it(self):

@@ -158,6 +158,29 @@ class KeysTest(Words):
                            ("operator", "dense")):
             self.assertEqual(result[key], value, key)
 
+    def test_an_override_finds_a_step_by_its_place(self):
+        """And a load replaces another; what is not there is not made."""
+        steps = ("moment_ratio = 0.2", "moment_ratio = 0.3", "moment_ratio = 0.1\nforce = [1, 0]")
+        text = UNLOADED + "".join(f"[[step]]\n{step}\n" for step in steps)
+        settings = ("step[0].twist=1e-4", "step[2].moment_ratio=0.4", "step[2].force=[2, 0]")
+        first, second, third = self.solved(text, *(word for each in settings for word in ("--set", each)))["steps"]
+        self.assertAlmostEqual(first["twist_angle"], 1e-4, delta=1e-18)
+        for step, ratio, force in ((second, 0.3, 0), (third, 0.4, 2)):
+            self.assertAlmostEqual(step["moment_ratio"], ratio, delta=1e-12)
+            self.assertAlmostEqual(step["force"][0], force, delta=1e-9)
+        for path in ("step[3].force", "step[].force", "step[-1].force", "step[x].force", "grid.cells[0].force", "stage[0].force",
+                     "step[2].part[0].force"):
+            self.run_program("solve", "scene.toml", "--set", f"{path}=1", code=2,
+                             says=(f"--set {path}", "is not a table of the scene file"))
+
+    def test_a_number_has_digits_on_both_sides_of_its_point(self):
+        self.write("scene.toml", SHORT_SCENE)
+        for number in (".5", "-.5", "5.", "5.e-1"):
+            for setting in (f"load.normal={number}", f"grid.extent=[1, {number}]"):
+                self.run_program("solve", "scene.toml", "--set", setting, code=2, says="both sides")
+        self.assertNotIn("both sides", self.run_program("solve", "scene.toml", "--set", "load.normal=five.", code=2))
+        self.assertEqual(self.solved(SHORT_SCENE, "--set", "name=.5")["name"], ".5")
+
     def test_a_whole_number_that_no_double_holds_is_a_number_too(self):
         result = self.solved(SHORT_SCENE, "--model", "exact", "--set", "load.normal=9223372036854775807")
         self.assertEqual(result["normal_load"], 2.0**63)
