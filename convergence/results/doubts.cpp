@@ -13,6 +13,9 @@ namespace {
 /// here, are neglected. A sphere's slope at the edge of its contact is a/R.
 constexpr double kSteep = 0.3;
 
+/// Cells of a wave, at least: a coarser grid leaves out what the shortest waves do.
+constexpr double kFewestCellsOfWave = 4.0;
+
 /// The peak pressure, or the mean one where the peak is infinite or not known.
 double pressure_of(const EndRecord& end) {
   const ContactRecord& contact = end.contact;
@@ -29,6 +32,20 @@ double slope_at(const solver::Surface& shape, double a) {
   if (shape.shape == rounded_punch) return (a - shape.flat_radius) / shape.corner_radius;
   if (shape.shape == power) return shape.coefficient * shape.exponent * std::pow(a, shape.exponent - 1.0);
   return shape.roughness.rms_slope;
+}
+
+/// About waves of a random surface that the grid hardly shows.
+void add_wave_doubts(const solver::Surface& shape, const ProblemRecord& grid,
+                     std::vector<std::string>& doubts) {
+  if (shape.shape != solver::Shape::roughness) return;
+  const double cell = std::fmax(grid.cell_size[0], grid.cell_size[1]);
+  const double cells = shape.roughness.shortest / cell;
+  constexpr double kRounding = 1e-9;
+  if (!(cells < kFewestCellsOfWave * (1.0 - kRounding))) return;
+  doubts.push_back(fmt::format(
+      "{}.shortest, {:.3g} m, is {:.3g} cells long: with fewer than {} the answer is "
+      "that of a smoother surface; take smaller cells or longer shortest waves",
+      shape.key.empty() ? "upper" : shape.key, shape.roughness.shortest, cells, kFewestCellsOfWave));
 }
 
 /// About the moduli and yield stresses, which the pressure should not exceed.
@@ -67,6 +84,7 @@ std::vector<std::string> doubts_about(const solver::Scene& scene, const SolveRec
 
   std::vector<std::string> doubts;
   for (const solver::Surface& shape : scene.surfaces) {
+    add_wave_doubts(shape, record.problem, doubts);
     const double slope = slope_at(shape, radius);
     if (!(slope > kSteep)) continue;
     const bool round = shape.shape == solver::Shape::sphere || shape.shape == solver::Shape::ellipsoid;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <utility>
 
 #include "convergence/results/provenance.hpp"
@@ -409,6 +410,12 @@ TractionErrorRecord make_traction_error(const TractionError& error, const std::s
 }
 
 std::size_t peak_bytes() {
+  // Of this program: after a fork, ru_maxrss also holds the peak of the process that started it.
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::size_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;

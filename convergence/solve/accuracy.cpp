@@ -56,8 +56,7 @@ void require_contact_seen(const Scene& scene, double pressed, double cells_acros
   if (cells_across >= kMinContactCells) return;
   throw InputError(
       scene.source.string(), "grid.extent",
-      scene.grid.extent ? fmt::format("[{}, {}]", (*scene.grid.extent)[0], (*scene.grid.extent)[1])
-                        : "(missing)",
+      scene.grid.extent ? solver::Units(scene.units).pair_text("m", *scene.grid.extent) : "(missing)",
       fmt::format(
           "at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
           "fills {} in all, too few to choose a mesh by",

@@ -24,7 +24,8 @@ constexpr std::string_view kOtherNames =
     " poissons_ratio=poisson_ratio mu=friction cof=friction friction_coefficient=friction R=radius"
     " diameter=radius load=normal normal_load=normal normal_force=normal force=normal weight=normal"
     " torque=moment twist_angle=twist rotation=twist twist_deg=twist coating=layer resolution=cells"
-    " yield=yield_stress yield_strength=yield_stress ";
+    " yield=yield_stress yield_strength=yield_stress n=cells"
+    " max=below min=above limit=below bound=below ";
 
 /// How the value or the place differs.
 std::string_view note_on(std::string_view other) {

@@ -63,6 +63,10 @@ double Units::of(const std::string& si, double value) const {
   return unit == nullptr ? value : value * std::pow(10.0, -unit->power);
 }
 
+std::string Units::pair_text(const std::string& si, const std::array<double, 2>& values) const {
+  return fmt::format(R"(["{0:.5g} {2}", "{1:.5g} {2}"])", of(si, values[0]), of(si, values[1]), word(si));
+}
+
 std::string Units::list(std::string_view si) {
   std::string list;
   for (const Unit& unit : kUnits) {

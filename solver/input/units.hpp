@@ -15,14 +15,15 @@ struct Unit {
   std::string_view si;
   int power;
 };
-inline constexpr std::array<Unit, 28> kUnits{
+inline constexpr std::array<Unit, 29> kUnits{
     {{"m", "m", 0},          {"cm", "m", -2},        {"mm", "m", -3},     {"um", "m", -6},
      {"\xC2\xB5m", "m", -6}, {"\xCE\xBCm", "m", -6}, {"nm", "m", -9},     {"Pa", "Pa", 0},
      {"kPa", "Pa", 3},       {"MPa", "Pa", 6},       {"GPa", "Pa", 9},    {"N/m2", "Pa", 0},
      {"N/m^2", "Pa", 0},     {"N/mm2", "Pa", 6},     {"N/mm^2", "Pa", 6}, {"N", "N", 0},
      {"mN", "N", -3},        {"kN", "N", 3},         {"N m", "N m", 0},   {"Nm", "N m", 0},
      {"N mm", "N m", -3},    {"Nmm", "N m", -3},     {"kN m", "N m", 3},  {"rad", "rad", 0},
-     {"mrad", "rad", -3},    {"s", "s", 0},          {"ms", "s", -3},     {"-", "", 0}}};
+     {"mrad", "rad", -3},    {"s", "s", 0},          {"ms", "s", -3},     {"-", "", 0},
+     {"%", "", -2}}};
 
 /// Null: there is none of this name.
 const Unit* find_unit(std::string_view word);
@@ -50,6 +51,9 @@ class Units {
   std::string word(const std::string& si) const;
   /// A value in SI in that unit.
   double of(const std::string& si, double value) const;
+
+  /// Two values in SI as a scene may give them: ["1.5 mm", "2 mm"].
+  std::string pair_text(const std::string& si, const std::array<double, 2>& values) const;
 
   /// The units for an SI unit, "m, cm, mm"; empty: there is none.
   static std::string list(std::string_view si);

@@ -12,6 +12,7 @@
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/elasticity/law/rescaled_law.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/units.hpp"
 #include "solver/model/memory_plan.hpp"
 #include "solver/model/symmetry.hpp"
 #include "solver/model/within_double.hpp"
@@ -47,10 +48,11 @@ void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
   const auto& extent = *scene.grid.extent;
   if (extent[0] > 2.0 * least[0] && extent[1] > 2.0 * least[1]) return;
   const bool one = surfaces.size() == 1;
-  throw InputError(scene.source.string(), "grid.extent", fmt::format("[{}, {}]", extent[0], extent[1]),
-                   fmt::format("larger than {}, about {:.4g} x {:.4g}, or left out",
+  const Units units(scene.units);
+  throw InputError(scene.source.string(), "grid.extent", units.pair_text("m", extent),
+                   fmt::format("larger than {}, about {}, or left out",
                                one ? "the contact" : "the rectangle that the contacts of all shapes may fill",
-                               2.0 * (*expected)[0], 2.0 * (*expected)[1]));
+                               units.pair_text("m", {2.0 * (*expected)[0], 2.0 * (*expected)[1]})));
 }
 
 Grid require_not_slender(const Scene& scene, const Grid& grid) {
@@ -91,10 +93,12 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
       known ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
   if (!scene.grid.extent && !expected) {
     throw InputError(scene.source.string(), "grid.extent", "(missing)",
-                     "[L1, L2] in m, since how far the contact reaches is not known before it is solved");
+                     "[L1, L2], two lengths, as [\"1 mm\", \"1 mm\"], since how far the contact reaches is "
+                     "not known before it is solved");
   }
   if (scene.grid.extent) require_extent(scene, surfaces, expected);
   std::array<double, 2> h{};
+  const Units units(scene.units);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto cells = static_cast<double>(scene.grid.cells[i]);
     const double margin = std::min(kExtentMarginCells, cells / 8.0);
@@ -103,12 +107,11 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
     if (scene.grid.extent && expected && surfaces.size() == 1 && scene.grid.cells[i] > 1 &&
         h[i] > 2.0 * (*expected)[i]) {
       throw InputError(
-          scene.source.string(), "grid.extent",
-          fmt::format("[{}, {}]", (*scene.grid.extent)[0], (*scene.grid.extent)[1]),
-          fmt::format("at most {:.2g} times the contact, about {:.4g} x {:.4g}, which fills less than "
+          scene.source.string(), "grid.extent", units.pair_text("m", *scene.grid.extent),
+          fmt::format("at most {:.2g} times the contact, about {}, which fills less than "
                       "one of [{}, {}] cells; or left out",
-                      0.5 * cells, 2.0 * (*expected)[0], 2.0 * (*expected)[1], scene.grid.cells[0],
-                      scene.grid.cells[1]));
+                      0.5 * cells, units.pair_text("m", {2.0 * (*expected)[0], 2.0 * (*expected)[1]}),
+                      scene.grid.cells[0], scene.grid.cells[1]));
     }
   }
   return require_not_slender(scene, {scene.grid.cells[0], scene.grid.cells[1], h[0], h[1]});

@@ -183,7 +183,8 @@ class Validation {
       refuse("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
     }
     if (scene_.contact.pressure == PressureModel::file && !scene_.grid.extent) {
-      refuse("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
+      refuse("grid.extent", "(missing)",
+             "[L1, L2], two lengths, as [\"1 mm\", \"1 mm\"], since the pressure's cells come from a file");
     }
   }
 

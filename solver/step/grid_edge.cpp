@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solver/input/input_error.hpp"
+#include "solver/input/units.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/step/pressure.hpp"
@@ -113,11 +114,12 @@ std::optional<std::array<double, 2>> sides_of_overlap(const Scene& scene, const 
 void require_contact_within_grid(const Scene& scene, const Model& model, const Step& step,
                                  const NormalSolution& normal, const ArrayXd& traction) {
   if (scene.ends_at_grid_edge || normal.status != Status::converged) return;
+  const Units units(scene.units);
   const auto refuse = [&](const std::string& allowed) {
     const Grid grid = model.grid_in_m();
     throw InputError(scene.source.string(), "grid.extent",
-                     fmt::format("[{:.6g}, {:.6g}]", grid.h1 * static_cast<double>(grid.n1),
-                                 grid.h2 * static_cast<double>(grid.n2)),
+                     units.pair_text("m", {grid.h1 * static_cast<double>(grid.n1),
+                                           grid.h2 * static_cast<double>(grid.n2)}),
                      allowed + "; or upper.ends_at_grid_edge = true, where the body ends there");
   };
   const bool at_edge = reaches_edge(model.grid, normal.pressure);
@@ -132,8 +134,9 @@ void require_contact_within_grid(const Scene& scene, const Model& model, const S
   } else if (scene.contact.pressure == PressureModel::solved) {  // Hertz's fits, or there is no model
     if (const auto sides = sides_of_overlap(scene, model, normal, traction))
       refuse(fmt::format(
-          "[{:.3g}, {:.3g}] m or more, since the contact extends beyond the grid's edge under {} N",
-          (*sides)[0] * model.length_unit, (*sides)[1] * model.length_unit, *step.normal));
+          "{} or more, since the contact extends beyond the grid's edge under {} N",
+          units.pair_text("m", {(*sides)[0] * model.length_unit, (*sides)[1] * model.length_unit}),
+          *step.normal));
   }
 }
 

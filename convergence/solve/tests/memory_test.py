@@ -58,6 +58,11 @@ class Memory(ProgramTest):
         self.assertLessEqual(doubles(FULL), 10)
         self.assertLessEqual(doubles(), 0.45 * doubles(FULL))
 
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_the_memory_of_the_program_that_starts_it_does_not_count(self):
+        held = b"x" * (256 << 20)
+        self.assertLess(self.taken("paper", 16)[1], len(held) / 4)
+
     def test_limit_is_what_a_plan_may_need(self):
         solve = ["solve", *words("paper", 16)]
         plan = self.result(*solve, "--plan")["plan"]

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 from program_run import SHORT_SCENE, ProgramTest
@@ -51,6 +52,20 @@ class UnitsTest(Words):
         result = self.solved(UNLOADED, "--set", "load.twist=0.05 deg")
         self.assertAlmostEqual(result["twist_angle"], 0.05 * math.pi / 180, delta=1e-15)
         self.assertIn("twist            0.05 deg", self.said)
+
+    def test_percents_are_hundredths(self):
+        half = self.solved(SHORT_SCENE, "--set", "load.moment_ratio=50 %")
+        for key in self.NUMBERS:
+            self.assertEqual(half[key], self.solved(SHORT_SCENE)[key], key)
+
+    def test_an_extent_that_a_message_names_can_be_typed(self):
+        """In a scene in mm, whose numbers without a unit are in mm."""
+        small = MILLIMETRES.replace("[1.1, 1.1]", "[0.5, 0.5]")
+        self.write("scene.toml", small)
+        said = self.run_program("solve", "scene.toml", code=2, says="grid.extent")
+        allowed = re.search(r'about (\["[^"]* mm", "[^"]* mm"\])', said).group(1)
+        larger = [1.1 * float(each.split()[0]) for each in json.loads(allowed)]
+        self.solved(small.replace("[0.5, 0.5]", str(larger)))
 
     def test_units_of_powers_and_of_the_power_law_of_friction_follow(self):
         """A gap of c r^3, c in m^-2, and a friction k p^0.5, k in Pa^0.5."""
@@ -232,7 +247,9 @@ class DoubtsTest(Words):
         self.doubted(cone, ("upper: the slope, 0.5",), options=("--model", "exact"))
         rough = SHORT_SCENE.replace("[lower]\n", "[lower]\n" + ROUGH.replace("0.01", "0.4")).replace(
             GRID, GRID + "extent = [2.4e-3, 2.4e-3]\n")
-        self.doubted(rough, ("lower: the slope, 0.4",))
+        self.doubted(rough, ("lower.shortest", "1.33 cells", "fewer than 4"), ("lower: the slope, 0.4",))
+        fine = rough.replace("0.4", "0.01")
+        self.assertNotIn("warnings", self.solved(fine, "--set", "lower.shortest=300e-6", "--set", "lower.longest=8e-4"))
 
     def test_a_modulus_in_gigapascals(self):
         text = SHORT_SCENE.replace("210e9", "210")

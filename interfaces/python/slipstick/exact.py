@@ -28,7 +28,8 @@ from . import _library
 from .errors import InputError
 
 __all__ = ["twist", "moment_ratio", "moment", "stick_ratio", "tangent_stiffness", "energy_lost", "states", "traction", "pressure",
-           "history", "curve", "Profile", "profile_named", "Contact", "contact_of"]
+           "history", "curve", "stresses", "largest_stress", "first_yield", "yield_load", "Profile", "profile_named", "Contact",
+           "contact_of"]
 
 Values = Optional[npt.ArrayLike]
 _GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")

@@ -48,7 +48,7 @@ std::string refusal(const Scene& scene) {
 
 /// Solves the scene on the extents that refusals name, one after the other; returns the last message.
 std::string follow_refusals(Scene scene) {
-  const std::regex named(R"(allowed: \[([0-9.e+-]+), ([0-9.e+-]+)\] m or more)");
+  const std::regex named(R"#(allowed: \["([0-9.e+-]+) m", "([0-9.e+-]+) m"\] or more)#");
   std::string message = refusal(scene);
   EXPECT_THAT(message, HasSubstr("grid.extent"));
   for (int round = 0; round < 3 && !message.empty(); ++round) {
