@@ -45,6 +45,8 @@ PATCHES = ('combine = "nearest"\nshape = [{shape = "sphere", radius = 0.018, at 
 BODIES = {SPHERE: (), TURNED: (), 'shape = "flat_punch"\nradius = 5e-4\ninner_radius = 2e-4\n': (),
           'shape = "cone"\nslope = 0.02\n': (), PATCHES % (0, 0.018, 0): ("grid.extent=[2.2e-3, 1.6e-3]",),
           PATCHES % (-1e-4, 0.006, 2e-4): ("grid.extent=[2.2e-3, 1.6e-3]",)}
+PUNCH = SHORT_SCENE.replace(SPHERE, 'shape = "flat_punch"\nradius = 5e-4\n').replace("friction = 0.1", "friction = 0.3")
+NOTHING = 1e-8  # the part of earlier tractions and motions that rounding leaves
 MAX_APPLICATIONS = 60  # on the finest grid, of any load's solve
 
 
@@ -238,3 +240,157 @@ class KnownHistory(ProgramTest):
         self.assertAlmostEqual(twists[-1, 0] / twists[-1, 1], -1.0, delta=1e-3)
         self.assert_near(twists[2:] / twists[1], 1.0, SAME)
         self.assert_near(dissipated[2:].sum(1) / dissipated[1].sum(), 1.0, SAME)
+
+    def test_parts_of_a_step_end_as_steps_that_are_written_out(self):
+        def pushed(*forces, settings=()):
+            return self.history(SHORT_SCENE, [{"moment_ratio": 0, "force": list(force)} for force in forces], "grid.cells=[24, 24]",
+                                *settings)[1][-1]
+
+        parts = pushed((50, 0), (30, 20), settings=("solver.substeps=2",))
+        written = pushed((25, 0), (50, 0), (40, 10), (30, 20))
+        self.assert_near(parts["displacement"], written["displacement"], 1e-12)
+        self.assertGreater(parts["dissipated"], written["dissipated"])  # of both parts, not of the last one
+        sets = ("--set", "solver.substeps=8", "--set", "solver.max_iterations=3", "--set", "load.force=[50, 0]")
+        self.run_program("solve", self.write("scene.toml", SHORT_SCENE), *sets, "--json", "r.json", code=1, says="part 1 of 8")
+        broken = json.loads(Path("r.json").read_text())
+        for key in ("twist_angle", "moment", "displacement", "force", "work"):
+            self.assertIsNone(broken[key], key)
+
+    def test_nothing_is_left_where_all_stuck(self):
+        """There the answer is linear in the load; a part leaves that part. A punch sticks up to 300 N."""
+        def pushed(force, least, *settings):
+            return self.history(PUNCH, [{"moment_ratio": 0, "force": [each, 0]} for each in (force, least)], *settings)[1:]
+
+        for force, left in itertools.product((1, 30, 120), (0, 1e-5)):
+            (first, last), fields = pushed(force, left * force)
+            self.assertEqual(first["stick_cells"], first["contact_cells"])
+            self.assert_near(fields[1]["q1"], left * fields[0]["q1"], NOTHING, fields[0]["q1"])
+            self.assertAlmostEqual(last["displacement"][0] / first["displacement"][0], left, delta=NOTHING)
+            self.assertAlmostEqual(last["certificate"]["energy"] / first["elastic_energy"], 1, delta=NOTHING)
+        # What is left of the energy is hardly above the rounding of the energy before.
+        for part in (1.255e-4, 1.842e-4, 2.012e-4, 3e-4, 4.319e-4, 5.439e-4):
+            (_, last), _ = pushed(1, part, "grid.cells=[24, 24]", "solver.tolerance=1e-8")
+            self.assertLessEqual(last["certificate"]["gap"], 1e-8)
+
+    def test_nothing_is_left_of_the_normal_load(self):
+        """Tractions that stay meet Coulomb's law under the load that stays, over an energy that this load can hold."""
+        for load in (1, 1e-4):
+            _, (first, last), _ = self.history(PUNCH, [{"moment_ratio": 0.4}, {"normal": load, "moment_ratio": 0}],
+                                               "solver.tolerance=1e-8")
+            self.assertLessEqual(last["certificate"]["friction_bound"], NOTHING)
+            self.assertLessEqual(abs(last["moment"]), NOTHING * last["moment_limit"])
+            most = max(last["elastic_energy"], 1e-3 * load * first["elastic_energy"])
+            self.assertLessEqual(last["certificate"]["energy"], most)
+
+    def test_one_cell_of_dissimilar_bodies_does_not_push_itself_aside(self):
+        result, (step,), (fields,) = self.history(
+            SHORT_SCENE, [{"moment_ratio": 0, "normal": 1}], "lower.young_modulus=70e9", "upper.at=[1e-4, 1e-4]",
+            "grid.cells=[16, 16]", "grid.extent=[0.0032, 0.0032]")
+        self.assertEqual((step["contact_cells"], np.abs(fields["q1"]).max(), step["certificate"]["gap"]), (1, 0, 0))
+        self.assertEqual((result["slip_direction"]["mean"], result["slip_direction"]["max"]), (None, None))
+
+    def test_loads_that_a_step_leaves_out_stay_in_the_second_cycle_too(self):
+        """To the bits of the steps written out."""
+        loop, load = [{"moment_ratio": 0.1}, {"normal": 700, "force": [0, 0]}], ("load.force=[30, 0]", "solver.tolerance=1e-8")
+        cycles = self.history(SHORT_SCENE, loop, *load, "cycles=2")[1]
+        fields = [np.genfromtxt(f"step{k}.csv", delimiter=",", names=True) for k in (1, 2, 3, 4)]
+        written = self.history(SHORT_SCENE, 2 * loop, *load)[1]
+        for k, (one, other) in enumerate(zip(cycles, written, strict=True)):
+            self.assertEqual(one["twist_angle"], other["twist_angle"])
+            again = np.genfromtxt(f"step{k + 1}.csv", delimiter=",", names=True)
+            for name in ("q1", "q2"):
+                np.testing.assert_array_equal(fields[k][name], again[name])
+        self.assertAlmostEqual(cycles[2]["normal_load"], 700, delta=1e-6)
+        third, second = (self.history(SHORT_SCENE, (2 * loop)[:n], *load)[0]["slip_direction"]["mean"] for n in (3, 2))
+        self.assertIsNone(third)  # nothing changes, so nothing slips
+        self.assertLessEqual(second, 1e-3)
+
+    def test_a_last_digit_costs_nothing(self):
+        """A scene with one leaves out as much of the grid as without it, and has the same twist."""
+        def solved(*settings):
+            return self.history(SHORT_SCENE, [{"moment_ratio": 0.5}], *settings)[0]
+
+        plain = solved()
+        parts = [part["what"] for part in plain["model"]["left_out"]]
+        self.assertEqual(len(parts), 5)  # coupling, translations, the grid's rim, three quarters, one field
+        for change in ("lower.poisson_ratio=0.30000000000000004", "upper.at=[1e-17, 0]", "load.force=[1e-300, 0]",
+                       "upper.young_modulus=210000000000.0001"):
+            changed = solved(change)
+            self.assertAlmostEqual(changed["twist_angle"] / plain["twist_angle"], 1, delta=1e-10)
+            self.assertLessEqual(set(parts), {part["what"] for part in changed["model"]["left_out"]}, change)
+        self.assertNotEqual(solved("load.force=[1e-7, 0]")["force"][0], 0)
+        self.assertEqual(solved("solver.model=full", "load.force=[1e-300, 0]")["model"]["left_out"], [])
+
+    def test_loads_beyond_the_limit_are_refused_with_it(self):
+        """The limit in numbers, where a factor of the loads would be 1. A moment ratio is that of the limit without a force."""
+        moved = ("upper.at=[2.445e-4, -3.424e-4]", "grid.cells=[40, 40]", "grid.extent=[1.956e-3, 1.956e-3]", "load.moment=0.0317")
+        for settings, *says in ((("load.moment_ratio=0", "load.force=[125, 0]"), "load.force = [125, 0] N", "0.8 times these: [",
+                                 "along (1, "),
+                                (("load.moment_ratio=0", "load.force=[100.0000001, 0]"), "[99.99999"),
+                                (("load.moment_ratio=0.9", "load.force=[90, 0]"), "load.force", "turning about ("),
+                                (moved, "load.moment = ", "turning about (0.0002445, -0.0003424) m")):
+            sets = itertools.chain(*(("--set", setting) for setting in settings))
+            said = self.run_program("solve", self.write("scene.toml", SHORT_SCENE), *sets, code=2, says=says)
+            self.assertNotIn(" 1 times", said)
+        # No force in one direction is too large where the other motion is imposed.
+        (free,), (pushed,), (held,) = (self.history(SHORT_SCENE, [step])[1] for step in (
+            {"moment_ratio": 0.5}, {"moment_ratio": 0.5, "force": [55, 23]}, {"twist": 1e-3, "force": [99, 0]}))
+        self.assertAlmostEqual(held["force"][0], 99, delta=1e-9)
+        self.assertAlmostEqual(pushed["moment_limit"] / free["moment_limit"], 1, delta=SAME)
+        self.assertAlmostEqual(pushed["moment"] / (0.5 * pushed["moment_limit"]), 1, delta=1e-12)
+        self.assertTrue(1 < pushed["limit"]["factor"] < free["limit"]["factor"])
+
+    def test_masings_rule_under_a_constant_bound(self):
+        """Back to the load's negative the tractions turn over."""
+        _, (first, back), fields = self.history(SHORT_SCENE, [{"moment_ratio": 0.7}, {"moment_ratio": -0.7}],
+                                                "contact.friction_law=tresca", "contact.shear_strength=8e7")
+        self.assertTrue(0 < first["stick_cells"] < first["contact_cells"])
+        for name in ("q1", "q2"):
+            self.assert_near(fields[1][name], -fields[0][name], SAME)
+        self.assertAlmostEqual(back["twist_angle"] / first["twist_angle"], -1, delta=SAME)
+
+    def test_a_law_without_friction_carries_no_moment(self):
+        """A moment that nothing carries is refused, and none is not."""
+        np.savetxt("none.csv", np.zeros((32, 32)), delimiter=",")
+        np.savetxt("one.csv", np.arange(1024).reshape(32, 32) == 500, delimiter=",")
+        none = "contact.friction=0"
+        for settings in ((none,), (none, "contact.friction_law=capped", "contact.shear_strength=8e7"),
+                         (none, "contact.friction_law=power", "contact.friction_exponent=0.5"),
+                         ("contact.friction_map=none.csv",), ("contact.friction_map=one.csv",)):
+            sets = itertools.chain(*(("--set", each) for each in (*settings, "step=[{moment_ratio = 0}, {moment_ratio = 0.7}]")))
+            self.run_program("solve", self.write("scene.toml", SHORT_SCENE), *sets, code=2,
+                             says=("step[1].moment_ratio", "no moment"))
+            self.history(SHORT_SCENE, [{"moment_ratio": 0}], *settings)
+            _, (turned,), _ = self.history(SHORT_SCENE, [{"twist": 1e-3}], *settings)
+            self.assertEqual(turned["twist_angle"], 1e-3)
+            self.assertAlmostEqual(turned["moment"], 0, delta=1e-12)
+
+    def test_a_compliant_layer_is_winklers_foundation(self):
+        """p = (approach - gap)/c, and each cell turns by itself up to its friction; the bodies give way by 1e-4 of that. With
+        a^2 = 2 R delta the load is pi R delta^2/c."""
+        compliance, reach, part = 1e6 * RADIUS * 4 * 1.3 / 210e9, 0.1 * 0.018, 1e-4
+        approach = reach**2 / (2 * 0.018)
+        load = {"normal": np.pi * 0.018 * approach**2 / compliance, "twist": 0.5 * FRICTION * approach / reach}
+        layer = [f"layer.{key}_compliance={compliance}" for key in ("normal", "tangential")]
+        result, (step,), (fields,) = self.history(SHORT_SCENE, [load], "layer.kind=winkler", *layer, "solver.tolerance=1e-8",
+                                                  f"grid.extent=[{2.4 * reach}, {2.4 * reach}]")
+        along = ((np.arange(n) - (n - 1) / 2) * h for n, h in zip(result["cells"], result["cell_size"]))
+        x1, x2 = np.meshgrid(*along, indexing="ij")
+        r = np.hypot(x1, x2)
+        pressure = np.maximum(step["approach"] - r**2 / 0.036, 0) / compliance
+        expected = np.minimum(step["twist_angle"] * r / compliance, FRICTION * pressure)
+        self.assertAlmostEqual(step["approach"] / approach, 1, delta=0.01)  # cells of the edge
+        for name, right in (("pressure", pressure), ("q1", -expected * x2 / r), ("q2", expected * x1 / r)):
+            self.assert_near(fields[name], right, part)
+        self.assertTrue(0 < step["stick_cells"] < step["contact_cells"])
+        sets = itertools.chain(*(("--set", each) for each in ("layer.kind=winkler", *layer)))
+        self.run_program("solve", "scene.toml", *sets, code=2, says="grid.extent = (missing)")
+
+    def test_a_bonded_layer_makes_a_contact_between_those_on_base_and_layer(self):
+        """The grid fits the softer of both."""
+        for thickness, modulus, ratio in ((0.02, 0.2, 0.5), (0.5, 0.1, 0.4), (0.3, 20, 0), (1, 3, -0.5)):
+            material = f"young_modulus={modulus * 210e9}, poisson_ratio={ratio}"
+            radii = [self.history(SHORT_SCENE, [{"moment_ratio": 0.5}], "grid.cells=[96, 96]", "contact.coupling=none",
+                                  "solver.tolerance=1e-11", *more)[1][0]["contact_radius"]
+                     for more in ((), (f"lower={{{material}}}",), (f"lower.layer={{thickness={thickness * RADIUS}, {material}}}",))]
+            self.assertTrue(0.99 * min(radii[:2]) < radii[2] < 1.01 * max(radii[:2]), radii)

@@ -208,7 +208,11 @@ class KeysTest(Words):
         found = self.solved(rigid, "--model", "exact", "--set", "contact.coupling=none")["contact_radius"]
         self.assertAlmostEqual(found / exact, 1, delta=1e-14)
         layer = f"[lower.layer]\nthickness = 1e-4\n{steel}"
-        self.solved(rigid.replace(steel, "rigid = true\n") + "extent = [1.6e-3, 1.6e-3]\n" + layer)
+        coated = rigid.replace(steel, "rigid = true\n") + "extent = [1.6e-3, 1.6e-3]\n" + layer
+        layer_only = self.solved(coated)
+        self.assertLess(layer_only["contact_radius"], exact)
+        between = self.solved(coated + '[layer]\nkind = "winkler"\nnormal_compliance = 1e-14\ntangential_compliance = 1e-14\n')
+        self.assertGreater(between["approach"], layer_only["approach"])
 
     def test_roughness_has_a_period_of_four_longest_waves(self):
         """And overrides find a shape by its place."""

@@ -64,6 +64,11 @@ BAD = [
     ("[contact]", "[lower.layer]\nthicknes = 1e-4\n[contact]", [], "lower.layer.thicknes",
      "nearest known one is lower.layer.thickness"),
     ("friction = 0.1", "friction = -0.1", [], "contact.friction = -0.1", "zero or positive"),
+    ("friction = 0.1", 'friction = 0.1\nfriction_law = "tresca"\nshear_strength = 1e8', [], "contact.friction = 0.1: allowed: left out: "
+     'friction_law = "tresca" takes contact.shear_strength and no contact.friction'),
+    ("friction = 0.1", "friction = 0.1\nshear_strength = 1e8", [], "no contact.shear_strength"),
+    ("friction = 0.1", 'friction = 0.1\nfriction_law = "capped"\nshear_strength = 1e8\nfriction_exponent = 2', [],
+     "no contact.friction_exponent"),
     ("moment_ratio = 0.9", "moment_ratio = 1.0", [], "scene.toml:16", "load.moment_ratio = 1:",
      "above -1 and below 1", "gross slip"),
     ("moment_ratio = 0.9", "moment_ratio = nan", [], "load.moment_ratio = nan", "above -1 and below 1"),
@@ -220,6 +225,15 @@ cycles = 3
         for more in ("name=any load", "load.normal=62.5"):  # 1e9 Pa on (0.25 mm)^2
             sets = (("--set", each) for each in (*settings, "load.moment_ratio=0", more))
             self.run_program("solve", "scene.toml", *itertools.chain(*sets))
+
+    def test_frictions_that_do_not_fit(self):
+        rows = [32 * ["1"] for _ in range(32)]
+        rows[3][5] = "-1"
+        for table, *says in ((rows[:31], "map.csv", "31 x 32", "allowed: 32 x 32"), (rows, "map.csv", "row 4, column 6: -1", "zero")):
+            self.write("map.csv", "".join(",".join(row) + "\n" for row in table))
+            self.refused(SHORT_SCENE, *says, settings=["contact.friction_map=map.csv"])
+        infinite = ["contact.friction_law=power", "contact.friction_exponent=3", "contact.friction=1e300"]
+        self.refused(SHORT_SCENE, "contact.friction", settings=infinite)
 
     def test_height_maps_that_do_not_fit(self):
         def mapped(*maps):
