@@ -17,15 +17,6 @@ const SelfSimilarIndenter kSphere;
 const SelfSimilarIndenter kFlat(kInfinity);
 const std::vector<SelfSimilarIndenter> kRound{SelfSimilarIndenter(1), kSphere, SelfSimilarIndenter(3.5)};
 
-TEST(CattaneoMindlin, IsTheTextbooksSphere) {
-  // Johnson 1985, Eqs. (7.41) and (7.42), with G_t for both bodies.
-  for (const double f : {0.01, 0.3, 0.9}) {
-    const auto state = from_force_ratio(f, kSphere);
-    EXPECT_NEAR(state.stick_ratio, std::cbrt(1 - f), 2 * kEps);
-    EXPECT_NEAR(state.displacement, 3.0 / 8 * (1 - std::pow(1 - f, 2.0 / 3)), 2 * kEps);
-  }
-}
-
 TEST(CattaneoMindlin, KeepsItsDigitsAtBothEnds) {
   for (const auto& indenter : kRound) {
     const double power = indenter.radius_power();

@@ -223,31 +223,6 @@ TEST(HistoryComparison, EnergyLostUnderAChangingNormalLoadNeedsSmallSteps) {
   }
 }
 
-// ------------------------------------------------------------------ torsion and force
-
-/// A pure moment turns a body about its own axis, wherever it stands: the mesh moved by whole cells, the
-/// errors about the axis equal the errors of the centred body.
-TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
-  Scene centred = on_cells(twisted(steel(), {0.8, -0.3}), 80);
-  centred.grid.extent = {1.6e-3, 1.6e-3};  // 20 um a cell
-  Scene shifted = centred;
-  shifted.surfaces.front().at = {8e-5, -1.2e-4};
-  const std::vector<State> here = follow(centred);
-  const std::vector<State> there = follow(shifted);
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    const auto& [a, b] = std::pair(here[i].errors, there[i].errors);
-    EXPECT_NEAR(b.twist, a.twist, kMotionToGap);
-    EXPECT_NEAR(b.dissipated, a.dissipated, 10.0 * kMotionToGap);
-    EXPECT_NEAR(b.moment_limit, a.moment_limit, 1e-9);
-    EXPECT_NEAR(b.traction.at_centres.l2, a.traction.at_centres.l2, kTractionToGap);
-    EXPECT_NEAR(b.stick_radius, a.stick_radius, kTractionToGap);
-    // A turn about c moves what is at the origin by (c2, -c1) times the twist.
-    const double twist = there[i].solution.twist_angle;
-    EXPECT_NEAR(there[i].solution.displacement[0], -1.2e-4 * twist, kMotionToGap * 1e-4 * std::abs(twist));
-    EXPECT_NEAR(there[i].solution.displacement[1], -8e-5 * twist, kMotionToGap * 1e-4 * std::abs(twist));
-  }
-}
-
 // ------------------------------------------------------------------ dissimilar bodies pressed together
 
 /// Against a rigid body, nu = 0: beta = 1/2. mu = 0.2986 is Spence's.

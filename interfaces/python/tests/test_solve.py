@@ -177,6 +177,14 @@ class SolveTest(unittest.TestCase):
         exact = slipstick.exact.twist(0.9)
         self.assertAlmostEqual(solution.twist / exact, 1, delta=1e-3)
 
+    def test_x2_runs_along_a_row_and_each_side_is_that_of_its_axis(self):
+        solution = slipstick.solve(SPHERE, grid__cells=[48, 32], grid__extent=[1.2e-3, 1.4e-3])
+        np.testing.assert_allclose(solution.cell_size, [1.2e-3 / 48, 1.4e-3 / 32], rtol=1e-12)
+        for axis, name in enumerate(("x1", "x2")):
+            self.assertEqual(solution.fields[name].shape, (48, 32))
+            np.testing.assert_allclose(np.diff(solution.fields[name], axis=axis), solution.cell_size[axis], rtol=1e-9)
+            self.assertEqual(np.ptp(solution.fields[name], axis=1 - axis).max(), 0)
+
     def test_scene_as_dict_text_and_file_is_one_scene(self):
         from slipstick._scene import toml_text
         text = toml_text(SPHERE)

@@ -143,6 +143,9 @@ BAD = [
     (SPHERE, 'radius = 1\nshape = [{shape = "sphere", radius = 1}]', [], "upper.radius = 1", "unknown key"),
     (SPHERE, 'combine = "product"\nshape = [{shape = "sphere", radius = 1}, {shape = "sphere", radius = 1}]', [],
      'upper.combine = "product"', "sum, nearest"),
+    *((SPHERE, shape, ["contact.pressure=hertz"], 'contact.pressure = "hertz"') for shape in (
+        'shape = [{shape = "sphere", radius = 1}, {shape = "sphere", radius = 1}]', 'shape = "flat_punch"\nradius = 1e-3',
+        'shape = "ellipsoid"\nradius_1 = 0.02\nradius_2 = 0.01\nangle = 0.4')),
     ("radius = 0.018", "radius = 0.018\nat = [1e-4, 0]", ["contact.pressure=hertz"], 'contact.pressure = "hertz"',
      "solved, file", "at the origin"),
 ]

@@ -212,17 +212,6 @@ TEST(ExpectedContact, IsNotKnownOfSumsAndRoughness) {
   EXPECT_THROW(make_model(scene_of({sphere(1.0), sphere(2.0)}, 8)), InputError);
 }
 
-TEST(Hertz, HoldsForOneParaboloidThatStandsStraight) {
-  EXPECT_EQ(hertzian_radii({sphere(2.0)}), (std::array{2.0, 2.0}));
-  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 3.0, 0.0)}), (std::array{2.0, 3.0}));
-  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 2.0, 0.4)}), (std::array{2.0, 2.0}));
-  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 3.0, 0.4)}), std::nullopt);
-  EXPECT_EQ(hertzian_radii({moved(sphere(2.0), 0.0, 1.0)}), std::nullopt);
-  EXPECT_EQ(hertzian_radii({moved(sphere(2.0), 1.0, 0.0)}), std::nullopt);
-  EXPECT_EQ(hertzian_radii({sphere(2.0), sphere(2.0)}), std::nullopt);
-  EXPECT_EQ(hertzian_radii({punch(2.0, 0.0)}), std::nullopt);
-}
-
 // --- contacts that are known from others ---
 
 TEST(BodiesOfRevolution, SinkInAsSneddonSays) {
