@@ -334,20 +334,6 @@ class HostileInput(ProgramTest):
         self.write("result.json", '{"twist_error": 0.5, "x": ' + 199 * "[" + 199 * "]" + "}")
         self.assertEqual(self.ends("result.json")[0], 0)
 
-    def test_a_kept_result_nested_without_end_is_computed_again(self):
-        self.write("study.toml", STUDY)
-
-        def study():
-            self.run_program("study", "study.toml", "--output", "runs", "--json", "study.json")
-            return json.loads(Path("study.json").read_text())["series"]
-
-        before = study()
-        kept = sorted(Path("runs").glob("sphere-*.json"))[0]
-        for levels in (201, 200000):
-            kept.write_text(changed(kept.read_text(), '"result": {', '"result": {"x": ' + levels * "[" + levels * "]" +
-                                    ", "))
-            self.assertEqual(study().keys(), before.keys())
-
     def test_many_keys_cost_no_more_than_many_numbers(self):
         """In processor time: work that grew like the square of this number would take a minute."""
         self.write("result.json", json.dumps({**{f"k{i}": i for i in range(300000)}, "twist_error": 0.5}))

@@ -156,18 +156,6 @@ class HostileOutput(ProgramTest):
         self.assertEqual(Path("with.svg").read_bytes(), Path("without.svg").read_bytes())
         self.assertEqual(Path("broken.svg").read_bytes(), Path("without.svg").read_bytes())
 
-    def test_a_folder_in_a_results_place_stops_no_study(self):
-        self.write("study.toml", 'scene = "scene.toml"\ncells = [8, 12]\n')
-        self.run_program("study", "study.toml", "--output", "runs")
-        for again in range(2):
-            kept = sorted(Path("runs").glob("scene-*.json"))[0]
-            kept.unlink()
-            kept.mkdir()
-            (kept / "mine").write_text(f"{again}")
-            self.run_program("study", "study.toml", "--output", "runs")
-            self.assertTrue(kept.is_file())
-        self.assertEqual(len(list(Path("runs").glob("*/mine"))), 2)
-
     def test_a_killed_figure_leaves_no_fields(self):
         """Killed while Python waits in the middle of it; only the process, or all of its group."""
         os.mkdir("python")

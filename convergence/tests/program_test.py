@@ -160,13 +160,6 @@ class Program(ProgramTest):
         self.run_program(*solve("cone", "--model", "exact"), says="exact solution")
         self.run_program(*solve("cone", "--set", "solver.model=exact", "--model", "auto"), says="24 x 24 cells")
 
-    def test_exact_model_refuses_with_exit_code_2(self):
-        self.run_program(*solve("ellipse", "--model", "exact"), code=2,
-                         says=("ellipse.toml", 'solver.model = "exact"', "auto, full", "ellipsoid"))
-        self.run_program(*solve("paper", "--model", "exact", "--set", "load.moment=0.05"), code=2,
-                         says=("load.moment = 0.05 N m", "gross slip", "M_lim = 0.02881"))
-        self.run_program(*solve("paper", "--model", "best"), code=2, says=("solver.model", "auto, full, exact"))
-
     def test_fields_hold_the_columns_of_the_contract(self):
         self.run_program(*solve("paper", "--fields", "fields.csv"))
         header = Path("fields.csv").read_text().splitlines()[0]

@@ -14,13 +14,14 @@ SPHERE = 'shape = "sphere"\nradius = 0.018'
 TRESCA = ("contact.friction_law=tresca", "contact.shear_strength=1e8")
 NO_CONTRACTION = ("upper.poisson_ratio=0", "lower.poisson_ratio=0")
 PUSH = "{moment_ratio=0, normal=1000, force=[%s, %s]}"
-# Scenes, settings, and the reason.
+# Scenes, settings, and words of the reason.
 NONE = (
     ("ellipse", ("contact.friction=0",), "friction"), ("ellipse", ("lower.poisson_ratio=0.2",), "coupling"),
     ("ellipse", ("lower.poisson_ratio=0.2", "load.moment_ratio=0"), "coupling"),
     ("ellipse", TRESCA, 'friction_law = "tresca"'), ("dissimilar", (), "coupling"), ("annulus", (), "inner radius"),
     ("patches", (), "several shapes"), ("rough_sphere", (), "several shapes"),
-    ("paper", ("load.moment=0.02882",), "gross slip"), ("cone", ("load.moment=0.0035",), "gross slip"),
+    ("paper", ("load.moment=0.02882",), "load.moment = 0.02882 N m", "gross slip", "M_lim = 0.02881"),
+    ("cone", ("load.moment=0.0035",), "gross slip"),
     ("cone", ("contact.friction_law=capped", "contact.shear_strength=1e8"), '"capped"'), ("paper", ("load.twist=1e3",), "range"),
     ("paper", ("contact.friction=0",), "friction"), ("paper", ("contact.friction_map=map.csv",), "contact.friction_map"),
     ("paper", ("load.moment_ratio=0", "load.force=[30,40]"), "Poisson's ratios are 0"),
@@ -95,7 +96,10 @@ class ExactAnswers(ProgramTest):
 
     def test_say_why_there_is_none(self):
         self.write("map.csv", 128 * (",".join(128 * ["1"]) + "\n"))
-        for scene, settings, says in NONE:
+        self.run_program(*self.words("paper"), "--model", "best", code=2, says=("solver.model", "auto, full, exact"))
+        self.run_program(*self.words("ellipse"), "--model", "exact", code=2,
+                         says=("ellipse.toml", 'solver.model = "exact"', "auto, full", "ellipsoid"))
+        for scene, settings, *says in NONE:
             settings = [each.replace("map.csv", str(self.folder / "map.csv")) for each in settings]
             self.run_program(*self.words(scene, *settings), "--model", "exact", code=2, says=says)
         result = self.result(*self.words("ellipse", "lower.poisson_ratio=0.2", "contact.coupling=none", "grid.cells=[16,16]"))

@@ -102,6 +102,7 @@ class KeptRuns(ProgramTest):
         wrong = (("program", 3), ("cache_key", None), ("result", None), ("result", "text"), ("result", {}), ("checksum", 3))
         twist = repr(whole["result"]["twist_angle"])
         damages = ["", good[:len(good) // 2], "\x7f\0\xff", good.replace(twist, "0.2"), "[1, 2]", "3", 100000 * "[",
+                   *(good.replace('"result": {', f'"result": {{"x": {levels * "[" + levels * "]"}, ') for levels in (201, 200000)),
                    *(json.dumps({**whole, key: value}) for key, value in wrong)]
         others = (file.mkdir, lambda: os.mkfifo(file), lambda: file.symlink_to("/dev/null"), lambda: file.symlink_to("nowhere"))
         for damage in (*((lambda text=text: file.write_text(text)) for text in damages), *others):
@@ -114,6 +115,12 @@ class KeptRuns(ProgramTest):
             self.assertEqual(list(Path("runs").iterdir()), [file])
             self.assertEqual(self.answer(again)["twist_angle"], whole["result"]["twist_angle"])
             row = again
+        for mine in (1, 2):  # a folder with something in it is put aside
+            file.unlink()
+            file.mkdir()
+            (file / "mine").touch()
+            self.run_all([])
+            self.assertEqual((file.is_file(), len(list(Path("runs").glob("*/mine")))), (True, mine))
 
     def test_are_computed_again_by_another_program(self):
         before = self.seconds([])
