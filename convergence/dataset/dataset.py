@@ -19,6 +19,7 @@ import other_contacts
 import stresses
 import tables
 from mpmath import mpf
+from slipstick import conformance
 from tables import COLUMNS
 
 HERE = Path(__file__).resolve().parent
@@ -120,6 +121,7 @@ def main():
         return 1
     for table in found:
         write_table(root / "tables", table)
+    conformance.write(root / "cases")
     write_package(root, found, cells, problems)
     file = write_zip(root)
     print(f"{file}: {sum(len(table.rows) for table in found):,} values, all recomputed; {cells:,} cells audited; {len(problems)} discrete "

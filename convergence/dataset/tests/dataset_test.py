@@ -24,7 +24,7 @@ import fields  # noqa: E402
 import second  # noqa: E402
 import stresses  # noqa: E402
 import tables  # noqa: E402
-from slipstick import exact  # noqa: E402
+from slipstick import conformance, exact  # noqa: E402
 
 PROGRAM, *SOLVER = [str(Path(word).resolve()) for word in sys.argv[1:]]
 READERS = {"Python": [["python3", "read.py"]], "C++": [["c++", "-std=c++17", "read.cpp", "-o", "reader"], ["./reader"]],
@@ -91,6 +91,13 @@ class Small(unittest.TestCase):
         at = float(hertz[0]["at"])  # M/M_lim -> 32 (1 - c)/(3 pi)
         self.assertEqual((hertz[0]["given"], at), ("moment_ratio", 1e-7))
         self.assertAlmostEqual(float(hertz[0]["value"]) * 32 / (3 * math.pi) / at, 1, delta=1e-6)
+
+    def test_cases_for_simulators_pass_with_their_own_responses(self):
+        listed = json.loads((self.root / "cases/cases.json").read_text())["cases"]
+        for entry, case in zip(listed, conformance.cases(), strict=True):
+            with open(self.root / "cases" / entry["file"], newline="") as file:
+                rows = list(csv.DictReader(file))
+            self.assertTrue(conformance.judge(case, {name: [float(row[name]) for row in rows] for name in entry["responses"]}).passed)
 
     def test_a_wrong_value_is_found(self):
         for wrong in (1 + 1e-12, math.nan):

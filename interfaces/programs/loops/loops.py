@@ -1,24 +1,30 @@
 #!/usr/bin/env python3
-"""loops.py PROGRAM SCENE [--json FILE] [--only NAME]: simulators twist the sphere of a scene there and back under its normal load,
+"""loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--board FILE]: simulators twist the sphere of a scene there and back under its
+normal load, with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result
+has stiffness at the first step, largest moment and energy lost, relative to the exact values. With --board they also run the cases of
+slipstick.conformance: FILE.md and FILE.json have programs by cases. Reports simulators that are missing."""loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--board FILE]: simulators twist the sphere of a scene there and back under its normal load,
 with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result has
 stiffness at the first step, largest moment and energy lost, relative to the exact values. Reports simulators that are missing."""
 
 import argparse
 import importlib
 import json
+import os
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
-SIMULATORS = {"LAMMPS": "lammps_loop", "Yade": "yade_loop", "MuJoCo": "mujoco_loop", "Drake": "drake_loop"}
+import numpy as np
+
+SIMULATORS = {name: f"{name.lower()}_loop" for name in ("LAMMPS", "Yade", "MuJoCo", "Drake", "PyBullet", "Newton")}
 
 
 class Sphere:
     """A sphere on a half-space of its own material, its law, and the path that its loops follow."""
-
-    quarter = 4000  # steps from rest to the largest rotation or moment
 
     def __init__(self, slipstick, scene):
         read = tomllib.loads(Path(scene).read_text())
@@ -33,11 +39,6 @@ class Sphere:
         exact = self.json("solve", scene, "--model", "exact", "--set", "load.moment_ratio=0.9")
         self.contact_radius, self.rotation = exact["contact_radius"], exact["twist_angle"]
 
-    def path(self, step):
-        """There and back in five quarters: 0, 1, 0, -1, 0, 1."""
-        part = step / self.quarter
-        return part if part <= 1 else 2 - part if part <= 3 else part - 4
-
     def json(self, *words):
         done = subprocess.run([self.slipstick, *map(str, words), "--json", "-", "--quiet"], capture_output=True, text=True)
         if done.returncode == 2:
@@ -45,16 +46,49 @@ class Sphere:
         return json.loads(done.stdout)
 
 
-def judged(sphere, name, version, friction, loop):
+def loop_path(sphere, rows, seconds):
+    """A loop in five quarters, as a path of slipstick.conformance: the moment up to 0.9 of the limit, the exact twist in proportion."""
+    part = np.interp(np.arange(5 * rows + 1), rows * np.array([0, 1, 3, 5]), [0, 1, -1, 1])
+    return SimpleNamespace(time=seconds * np.arange(len(part)) / rows, normal_load=np.full(len(part), sphere.load), force=0 * part,
+                           moment=0.9 * sphere.limit * part, twist=sphere.rotation * part, displacement=0 * part, shortest=seconds / rows)
+
+
+def judged(sphere, name, version, friction, respond):
     """Writes the loop for `check`, and returns its verdict."""
+    path = loop_path(sphere, 400, 4.0)
+    rows = np.column_stack([{**vars(path), **respond(path, False)}[column] for column in ("moment", "twist")])
     with tempfile.TemporaryDirectory() as folder:
-        rows = loop(Path(folder))
         file = Path(folder) / "loop.csv"
         file.write_text("moment,rotation\n" + "".join(f"{moment:.10e},{rotation:.10e}\n" for moment, rotation in rows))
         verdict = sphere.json("check", sphere.scene, file)
+    largest = np.abs(rows).max(axis=0).tolist()
     return {"program": name, "version": version, "friction": friction, "verdict": verdict["verdict"], "why": verdict["why"],
-            "largest_moment_over_limit": max(abs(moment) for moment, _ in rows) / sphere.limit,
-            "largest_rotation": max(abs(rotation) for _, rotation in rows), "loads": verdict["loads"]}
+            "largest_moment_over_limit": largest[0] / sphere.limit, "largest_rotation": largest[1], "loads": verdict["loads"]}
+
+
+def on_cases(sphere, name, version, friction, respond):
+    """A row of the board."""
+    from slipstick import conformance
+    contact = conformance.Sphere(sphere.radius, sphere.load, sphere.friction, sphere.young, sphere.poisson)
+    started, found = time.process_time() + os.times().children_user, {}
+    for case in conformance.cases(contact):
+        try:
+            parts = []
+            for run in np.unique(case.run):
+                rows = {column: getattr(case, column)[case.run == run] for column in conformance.COLUMNS}
+                path = SimpleNamespace(**rows, shortest=np.diff(case.time)[np.diff(case.run) == 0].min())
+                parts.append(respond(path, "displacement" not in case.responses and "twist" not in case.responses))
+            whole = {column: np.concatenate([part[column] for part in parts]) for column in parts[0]}
+            given = {column: whole[column] for column in case.responses if column in whole}
+            if not given:
+                raise LookupError(f"its adapter imposes the {case.responses[0]}")
+            found[case.id] = conformance.judge(case, given)
+        except LookupError as missing:
+            found[case.id] = str(missing)
+        verdict = found[case.id]
+        print(f"  {case.id:<16} " + (verdict if isinstance(verdict, str) else f"{verdict.verdict}: {verdict.why}"))
+    return {"program": name, "version": version, "friction": friction, "cases": found,
+            "seconds": time.process_time() + os.times().children_user - started}
 
 
 def main():
@@ -63,22 +97,32 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--json")
     parser.add_argument("--only", choices=SIMULATORS)
+    parser.add_argument("--board", help="FILE.md and FILE.json of the cases; an earlier FILE.json shows what changed")
     arguments = parser.parse_args()
-    sphere, found = Sphere(arguments.program, arguments.scene), []
+    sys.path.insert(0, str(Path(arguments.program).resolve().parent / "python"))
+    sphere, found, rows = Sphere(arguments.program, arguments.scene), [], []
     for name in [arguments.only] if arguments.only else SIMULATORS:
         try:
-            version, loops = importlib.import_module(SIMULATORS[name]).runs(sphere)
+            version, variants = importlib.import_module(SIMULATORS[name]).runs(sphere)
         except LookupError as missing:
             print(f"LEFT OUT: {name}, since {missing}")
             continue
-        for friction, loop in loops:
-            row = judged(sphere, name, version, friction, loop)
+        for friction, respond in variants:
+            row = judged(sphere, name, version, friction, respond)
             found.append(row)
             print(f"{name} {version}, {friction}\n  largest moment {row['largest_moment_over_limit']:.5g} of the exact limit, largest "
                   f"rotation {row['largest_rotation']:.4g} rad (exact at 0.9: {sphere.rotation:.4g})\n  {row['verdict']}: {row['why']}")
+            if arguments.board:
+                rows.append(on_cases(sphere, name, version, friction, respond))
     if arguments.json:
         text = {"scene": arguments.scene, "limit": sphere.limit, "law": sphere.law["programs"], "loops": found}
         Path(arguments.json).write_text(json.dumps(text, indent=1))
+    if arguments.board:
+        from slipstick import conformance
+        kept = Path(f"{arguments.board}.json")
+        page, result = conformance.board(rows, json.loads(kept.read_text()) if kept.exists() else None)
+        kept.write_text(json.dumps(result, indent=1))
+        Path(f"{arguments.board}.md").write_text(page)
 
 
 if __name__ == "__main__":

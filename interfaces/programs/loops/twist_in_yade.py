@@ -1,4 +1,4 @@
-# A script for Yade: two spheres from scene.json, the upper one twisted there and back.
+# A script for Yade: two spheres from scene.json, the upper one twisted row by row.
 import json
 import math
 
@@ -12,12 +12,11 @@ O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()]),
                              [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True,
                                                                         useIncrementalForm=scene["incremental"])]),
              NewtonIntegrator(damping=0)]
-O.dt, quarter, rows = 1e-6, scene["quarter"], []
-for step in range(5 * quarter):
-    speed = scene["rotation"] / (quarter * O.dt)
-    O.bodies[upper].state.angVel = (0, 0, -speed if quarter <= step < 3 * quarter else speed)
-    O.step()
-    if step % 10 == 0:
-        rows.append((step, O.forces.t(lower)[2]))
+O.dt, rows = scene["step"], []
+for turn in scene["turns"]:
+    O.bodies[upper].state.angVel = (0, 0, turn / (scene["steps"] * O.dt))
+    for _ in range(scene["steps"]):
+        O.step()
+    rows.append(O.forces.t(lower)[2])
 with open("out.json", "w") as file:
     json.dump(rows, file)

@@ -4,7 +4,11 @@ of CohFrictMat has a twisting moment, a spring with a cap; Hertz-Mindlin's law h
 import json
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
+
+import numpy as np
+from stepping import STEP, turned
 
 
 def runs(sphere):
@@ -16,18 +20,20 @@ def runs(sphere):
     own = {"alphaKtw": 2.0, "etaTwist": -1.0}  # Yade's defaults: no cap
     ours = {"alphaKtw": law["k_twist"] / (shear * radius**2), "etaTwist": law["mu_twist"] / radius}
     words = "slipstick law, its spring and cap: " + ", ".join(f"{key} = {ours[key]:.5g}" for key in ours)
-    return version, [("its own: alphaKtw = 2, etaTwist = -1", loop(sphere, own)), (words, loop(sphere, ours)),
-                     (words + ", useIncrementalForm", loop(sphere, ours, True))]
+    return version, [("its own: alphaKtw = 2, etaTwist = -1", twisted(sphere, own)), (words, twisted(sphere, ours)),
+                     (words + ", useIncrementalForm", twisted(sphere, ours, True))]
 
 
-def loop(sphere, twisting, incremental=False):
-    def run(folder):
-        radius = 2 * sphere.radius
+def twisted(sphere, twisting, incremental=False):
+    def respond(path, _):
+        contact, turns, steps = turned(sphere, path)
+        radius, load = 2 * sphere.radius, sphere.load * (contact / sphere.contact_radius)**3
         scene = {"twisting": twisting, "young": sphere.young, "poisson": sphere.poisson, "friction": sphere.friction, "radius": radius,
-                 "distance": 2 * radius - sphere.load / (sphere.young * radius), "rotation": sphere.rotation, "quarter": sphere.quarter,
+                 "distance": 2 * radius - load / (sphere.young * radius), "turns": turns, "steps": steps, "step": STEP,
                  "incremental": incremental}
-        (folder / "scene.json").write_text(json.dumps(scene))
-        script = Path(__file__).with_name("twist_in_yade.py").resolve()
-        subprocess.run(["yade", "-n", "-x", script], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return [(moment, sphere.rotation * sphere.path(step)) for step, moment in json.loads((folder / "out.json").read_text())]
-    return run
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "scene.json").write_text(json.dumps(scene))
+            script = Path(__file__).with_name("twist_in_yade.py").resolve()
+            subprocess.run(["yade", "-n", "-x", script], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            return {"moment": np.array([0.0, *json.loads((Path(folder) / "out.json").read_text())])}
+    return respond

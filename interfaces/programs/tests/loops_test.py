@@ -1,5 +1,6 @@
-"""loops_test.py PROGRAM SCENES NAME PYTHON: compares loops of a simulator with the errors that `slipstick law` states for it. Skipped
-(77) if it is not installed. PYTHON runs the simulator if possible: the Python of `make peers`, with MuJoCo and Drake."""
+"""loops_test.py PROGRAM SCENES NAME PYTHON: compares loops of a simulator with the errors that `slipstick law` states for it, and verdicts
+of slipstick.conformance with what is known of the simulator. Skipped (77) if it is not installed. PYTHON runs the simulator if possible:
+the Python of `make peers`, with MuJoCo, Drake and PyBullet."""
 
 import json
 import os
@@ -34,24 +35,40 @@ def creeps(loop, exact):
     assert loop["largest_rotation"] > 3 * exact, loop
 
 
+def has_verdicts(board, friction, **wanted):
+    cells = board["programs"][friction]["cases"]
+    names = [key.replace("_0_", "_0.").replace("_", "-") for key in wanted]
+    found = {name: (cells[name]["verdict"], cells[name].get("cause")) for name in names}
+    assert list(found.values()) == list(wanted.values()), found
+
+
 def main(program, scenes, name, python):
     scene = Path(scenes) / "paper.toml"
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "loops.json"
         words = [python if os.access(python, os.X_OK) else sys.executable, "-B", LOOPS, program, scene, "--json", file, "--only", name]
+        if has_board := name in ("LAMMPS", "MuJoCo", "PyBullet"):
+            words += ["--board", Path(folder) / "board"]
         subprocess.run(words, check=True)
-        found = json.loads(file.read_text())
+        found, board = (json.loads(each.read_text()) if has_board or each is file else None for each in (file, Path(folder) / "board.json"))
     loops, law = found["loops"], found["law"]
     if not loops:
         return 77  # and loops.py said so
     if name == "LAMMPS":
         is_spring_and_slider(loops[1], law["lammps"])
+        has_verdicts(board, 0, load_powers=("green", None), rates=("green", None))  # Marshall's spring and cap grow with the contact
+        has_verdicts(board, 1, first_loading=("red", "spring_and_cap"), load_powers=("red", "constant_radius"), rates=("green", None))
+    elif name == "PyBullet":  # rigid and without creep about the normal; force and moment know nothing of each other
+        has_verdicts(board, 1, first_loading=("red", "rigid"), hold_moment_0_9=("green", None), limit_surface=("red", "box"),
+                     load_powers=("red", "constant_radius"))
     elif name == "Yade":
         is_a_cap_without_memory(loops[1])
         is_spring_and_slider(loops[2], law["lammps"])
     else:
         for loop in loops:
             creeps(loop, law["mujoco"]["lost_presliding"])
+        if board:
+            has_verdicts(board, 1, hold_moment_0_5=("red", "creeps"), hold_force_0_5=("red", "creeps"), rates=("red", "creeps"))
     return 0
 
 

@@ -108,7 +108,7 @@ def _hold_cause(case: Any, data: Mapping[str, Array]) -> Cause:
 def _surface_cause(case: Any, data: Mapping[str, Array]) -> Cause:
     loads, right = sliding_loads(case, data), sliding_loads(case, {"force": case.force, "moment": case.moment})
     for column, name in enumerate(("force", "moment")):
-        if np.abs(loads[:, column]).max() < _NEAR:
+        if np.abs(loads[:, column]).max() < 0.05:
             other = ": a point of contact without a patch" if name == "moment" else ""
             return f"no_{name}", f"sliding brings no {name}{other}"
     own = np.array([loads[-1, 0], loads[0, 1]])  # under force alone, under moment alone
