@@ -2,9 +2,7 @@
 """loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--board FILE]: simulators twist the sphere of a scene there and back under its
 normal load, with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result
 has stiffness at the first step, largest moment and energy lost, relative to the exact values. With --board they also run the cases of
-slipstick.conformance: FILE.md and FILE.json have programs by cases. Reports simulators that are missing."""loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--board FILE]: simulators twist the sphere of a scene there and back under its normal load,
-with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result has
-stiffness at the first step, largest moment and energy lost, relative to the exact values. Reports simulators that are missing."""
+slipstick.conformance: FILE.md and FILE.json have programs by cases. Reports simulators that are missing."""
 
 import argparse
 import importlib
