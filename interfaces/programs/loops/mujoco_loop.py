@@ -22,11 +22,11 @@ class Engine:
         size, worn = sphere.radius, f'condim="4" {friction}'
         self.model = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="{self.step_size}" gravity="0 0 0" cone="elliptic"/>
           <worldbody><geom type="plane" size="9 9 .1" {worn}/><body pos="0 0 {size}"><joint type="slide" axis="0 0 1"/>
-          <joint type="hinge" axis="0 0 1"/><joint type="slide" axis="1 0 0"/>
+          <joint type="slide" axis="1 0 0"/><joint type="hinge" axis="0 0 1"/>
           <geom type="sphere" size="{size}" mass="{mass}" {worn}/></body></worldbody></mujoco>""")
         self.data, self.advance = mujoco.MjData(self.model), mujoco.mj_step
 
     def step(self, normal_load, moment, force):
-        self.data.qfrc_applied[:] = -normal_load, moment, force
+        self.data.qfrc_applied[:] = -normal_load, force, moment
         self.advance(self.model, self.data)
-        return self.data.qpos[1:].copy()
+        return self.data.qpos[2], self.data.qpos[1]

@@ -42,10 +42,11 @@ def kind_of(name: str) -> str:
 
 
 def sliding_loads(case: Any, data: Mapping[str, Array]) -> Array:
-    """Force and moment over their limits, a row for each run: its last."""
-    last = np.flatnonzero(np.append(np.diff(case.run), 1))
+    """Force and moment over their limits, a row for each run: the mean over its second half, since some programs hop."""
+    halves = [rows[len(rows) // 2:] for rows in np.split(np.arange(len(case.run)), np.flatnonzero(np.diff(case.run)) + 1)]
     load = case.sphere.normal_load
-    return np.column_stack([data["force"][last] / (case.sphere.friction * load), data["moment"][last] / case.sphere.limit(load)])
+    units = case.sphere.friction * load, case.sphere.limit(load)
+    return np.array([[data["force"][rows].mean() / units[0], data["moment"][rows].mean() / units[1]] for rows in halves])
 
 
 def deviation_cause(case: Any, data: Mapping[str, Array], numbers: list[float]) -> Cause:

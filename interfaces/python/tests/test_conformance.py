@@ -15,6 +15,7 @@ from pathlib import Path
 
 import drawn_loops
 import numpy as np
+import slipstick
 from drawn_loops import HERTZ
 from slipstick import InputError, conformance
 from slipstick.conformance import Sphere, cases, judge
@@ -137,6 +138,20 @@ class Right(unittest.TestCase):
             for name, value in sliding(part, surface).items():
                 found[name][rows] = value[0]
         return found
+
+    def test_normal_load_on_a_grid(self):
+        case, loads = named("normal-load"), (1000, 2000, 1000, 800, 650)
+        steps = "".join(f"[[step]]\nnormal = {load}\nmoment = {case.moment[-1]}\n" for load in loads)
+        body = f"young_modulus = {SPHERE.young_modulus}\npoisson_ratio = {SPHERE.poisson_ratio}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "scene.toml"
+            scene.write_text(f'name = "held"\n[upper]\nshape = "sphere"\nradius = {SPHERE.radius}\n{body}[lower]\n{body}[contact]\n'
+                             f'friction = {SPHERE.friction}\n[load]\nnormal = 1000\nmoment = {case.moment[-1]}\n{steps}'
+                             '[grid]\ncells = [64, 64]\n')
+            found = [step.twist_angle for step in slipstick.solve(scene).steps]
+        loaded, back, fallen = case.marks["phases"]
+        fall = [np.interp(-load, -case.normal_load[back:], case.twist[back:]) for load in loads[3:]]
+        np.testing.assert_allclose(found, [case.twist[loaded], case.twist[(loaded + back) // 2], case.twist[back], *fall], rtol=5e-4)
 
     def test_powers_of_the_load(self):
         self.assertAlmostEqual(SPHERE.stiffness(8.0) / SPHERE.stiffness(1.0), 8.0, places=9)
