@@ -40,7 +40,7 @@ def _respond(engine, path, inertias):
 
 
 def _moved(engine, loads, rates, at, inertias):
-    """The loads that the contact takes: those that keep the rates, less inertia."""
+    """The loads that the contact takes: loads that keep the rates, less inertia."""
     now = np.zeros(2)
     for load, rate in zip(loads, rates):
         pushed = 0.5 * inertias / engine.step_size * (rate - now)

@@ -112,7 +112,7 @@ def _surface_cause(case: Any, data: Mapping[str, Array]) -> Cause:
         if np.abs(loads[:, column]).max() < 0.05:
             other = ": a point of contact without a patch" if name == "moment" else ""
             return f"no_{name}", f"sliding brings no {name}{other}"
-    own = np.array([loads[-1, 0], loads[0, 1]])  # under force alone, under moment alone
+    own = np.array([loads[-1, 0], loads[0, 1]])  # pure force, pure moment
     sphere, last = case.sphere, np.flatnonzero(np.append(np.diff(case.run), 1))
     load = sphere.normal_load
     # The motion is normal to the surface in the plane of both ratios.

@@ -109,14 +109,10 @@ class Case:
     twist: Array
     force: Array
     displacement: Array
-    responses: tuple[str, ...]  #: the columns of which a program answers at least one; it imposes the others
+    responses: tuple[str, ...]  #: columns; a program answers at least one and imposes the others
     measures: tuple[Measure, ...]
     causes: tuple[str, ...]  #: that a deviation may have
     marks: dict[str, Any] = field(default_factory=dict)  #: rows that the measures use
-
-    def imposed(self, response: Mapping[str, Any]) -> tuple[str, ...]:
-        """The columns of the path besides a response's."""
-        return tuple(name for name in COLUMNS[1:] if name not in response)
 
 
 @dataclass(frozen=True)
@@ -315,7 +311,7 @@ def _off(case: Case, data: Mapping[str, Array]) -> float:
 
 def _numbers(case: Case, data: dict[str, Array]) -> list[float]:
     """The values of a case's measures. A response that shows none has NaN."""
-    kind, sphere = case.id, case.sphere
+    kind = case.id
     exactly = {name: getattr(case, name) for name in COLUMNS}
     if kind == "first-loading":
         return [_at_rest(case, data) / _at_rest(case, exactly) - 1, _off(case, data)]
@@ -335,7 +331,7 @@ def _numbers(case: Case, data: dict[str, Array]) -> list[float]:
     if kind == "memory":
         return [_off(case, data)]
     if kind == "limit-surface":
-        return _surface_numbers(case, data, sphere)
+        return _surface_numbers(case, data)
     if kind == "normal-load":
         loaded, back, fallen = case.marks["phases"]
         twist, before = data["twist"], data["twist"][loaded]
@@ -348,7 +344,7 @@ def _numbers(case: Case, data: dict[str, Array]) -> list[float]:
                 for name in case.responses)]
 
 
-def _surface_numbers(case: Case, data: Mapping[str, Array], sphere: Sphere) -> list[float]:
+def _surface_numbers(case: Case, data: Mapping[str, Array]) -> list[float]:
     loads, right = sliding_loads(case, data), sliding_loads(case, {"force": case.force, "moment": case.moment})
     surface: list[LimitLoad] = LimitSurface(Curve("hertz"), 257).loads
     angles = np.arctan2([one.moment for one in surface], [one.force for one in surface])[::-1]
