@@ -26,7 +26,7 @@ CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=
          ("paper", 24, FULL, "solver.operator=dense"), ("paper", 36, FULL, "solver.operator=dense"),
          ("paper", 48, FULL, "solver.operator=direct"), ("ellipse", 288), ("turned_ellipse", 288),
          ("torsion_and_force", 160), ("torsion_and_force", 288), ("fretting_torsion", 288), ("dissimilar", 288),
-         ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 160)]
+         ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 288)]
 # Contacts whose size is known only after the solve.
 SPARSE = [("rough_sphere", 512, FULL), ("rough_sphere", 512, FULL, "contact.friction=0", "load.moment_ratio=0")]
 

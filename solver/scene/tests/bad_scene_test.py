@@ -266,9 +266,9 @@ cycles = 3
                  "grid.cells = [4096, 4096]", "fits in memory", 'operator = "dense"'),
                 (summed, [], "scene.toml", "grid.extent = (missing)", "[L1, L2]"),
                 # The contact's diameter is 0.978 mm.
-                (SHORT_SCENE, ["grid.extent=[0.0009, 0.0011]"], "grid.extent = [0.0009, 0.0011]",
+                (SHORT_SCENE, ["grid.extent=[0.0009, 0.0011]"], 'grid.extent = ["0.0009 m", "0.0011 m"]',
                  "larger than the contact"),
-                (SHORT_SCENE, ["grid.extent=[1, 1]"], "grid.extent = [1, 1]", "at most 16 times the contact"),
+                (SHORT_SCENE, ["grid.extent=[1, 1]"], 'grid.extent = ["1 m", "1 m"]', "at most 16 times the contact"),
                 (SHORT_SCENE, ["grid.extent=[0.0011, 0.0011]", "grid.cells=[8, 16384]"], "grid.cells = [8, 16384]",
                  "1000 times as long as wide")):
             self.refused(text, *says, settings=settings)

@@ -186,10 +186,11 @@ TEST(GridEdge, MustHoldAllBodiesSideBySide) {
 TEST(GridEdge, MayBeTheBodysWhereTheSceneSaysSo) {
   Scene one = scene_of({sphere(0.018)}, {32, 32}, 2e-5);
   for (auto [scene, extent, why] :
-       {std::tuple{two_spheres_side_by_side(1.1e-3), "[0.0011, 0.0011]",
+       {std::tuple{two_spheres_side_by_side(1.1e-3), R"(["0.0011 m", "0.0011 m"])",
                    "beyond the grid's edge under 1000 N"},
-        {scene_of({roughness()}, {32, 32}, 2.5e-5), "[0.0008, 0.0008]", "upper.ends_at_grid_edge = true"},
-        {one, "[0.00064, 0.00064]", "larger than the contact"}}) {
+        {scene_of({roughness()}, {32, 32}, 2.5e-5), R"(["0.0008 m", "0.0008 m"])",
+         "upper.ends_at_grid_edge = true"},
+        {one, R"(["0.00064 m", "0.00064 m"])", "larger than the contact"}}) {
     EXPECT_THAT(refusal(scene), says("grid.extent = " + std::string(extent), why));
     scene.ends_at_grid_edge = true;
     EXPECT_EQ(solve_in_model_units(scene).status, Status::converged);
@@ -257,7 +258,8 @@ TEST_F(SceneFile, TheEdgeOfAPressureFileHasToBeTheBodys) {
       "000125,1e9\n";
   const std::string at_edge = inside + "0.000375,0.000125,1e9\n-0.000375,-0.000125,1e9\n";
   EXPECT_EQ(refusal(pressed(inside)), "");
-  EXPECT_THAT(refusal(pressed(at_edge)), says("grid.extent = [0.001, 0.001]", "p.csv", "outermost"));
+  EXPECT_THAT(refusal(pressed(at_edge)),
+              says(R"(grid.extent = ["0.001 m", "0.001 m"])", "p.csv", "outermost"));
   EXPECT_EQ(refusal(pressed(at_edge, {"upper.ends_at_grid_edge=true"})), "");
   for (const char* one : {"0.000375,0.000125,1e9\n", "-0.000375,0.000125,1e9\n", "0.000125,0.000375,1e9\n",
                           "0.000125,-0.000375,1e9\n"}) {
