@@ -244,7 +244,7 @@ class Wrong(unittest.TestCase):
         def box(f, m):
             return float(f > 1e-12), float(m > 1e-12)
         self.turns("red", case, sliding(case, box), "box")
-        self.turns("amber", case, sliding(case, lambda f, m: (f, m)), "ellipsoid")
+        self.turns("red", case, sliding(case, lambda f, m: (f, m)), "ellipsoid")
         self.turns("red", case, sliding(case, lambda f, m: (1.0, 0.0) if f > m else (0.0, 1.0)), "diamond")
         for _ in range(DRAWS):
             high = self.draw.uniform(1.11, 2)
