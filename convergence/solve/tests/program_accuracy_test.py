@@ -88,11 +88,11 @@ class Accuracy(Solve):
                 ("mindlin", "--accuracy 1e-3 --model auto", "no torsion"),
                 ("honed_surface", "--accuracy 1e-3", "the grid is that of upper.file"),
                 # A contact of millimetres in a square metre: no mesh of reasonable size resolves it.
-                *(("turned_ellipse", f"{words} --set grid.extent=[1,1]", "grid.extent = [1, 1]",
+                *(("turned_ellipse", f"{words} --set grid.extent=[1,1]", 'grid.extent = ["1 m", "1 m"]',
                    "less than one of [64, 64] cells")
                   for words in ("--accuracy 0.1", "--accuracy 0.1 --plan", "--set grid.cells=[64,64]")),
                 # The size of a contact of several shapes is known only after a solve.
-                ("patches", "--accuracy 0.1 --set grid.extent=[1,1]", "grid.extent = [1, 1]",
+                ("patches", "--accuracy 0.1 --set grid.extent=[1,1]", 'grid.extent = ["1 m", "1 m"]',
                  "too few to choose a mesh by")):
             self.text(scene, words, code=2, says=says)
 
