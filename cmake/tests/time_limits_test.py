@@ -3,9 +3,13 @@
 import json
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 build, least = sys.argv[1], float(sys.argv[2])
-listing = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True)
+with tempfile.TemporaryDirectory() as folder:  # in the build folder it would empty the log of the ctest that runs this test
+    Path(folder, "CTestTestfile.cmake").write_text(f'subdirs("{Path(build).as_posix()}")\n')
+    listing = subprocess.run(["ctest", "--test-dir", folder, "--show-only=json-v1"], capture_output=True, text=True, check=True)
 tests = [test for test in json.loads(listing.stdout)["tests"] if not test["name"].endswith("_NOT_BUILT")]
 limits = {test["name"]: next((each["value"] for each in test["properties"] if each["name"] == "TIMEOUT"), 0)
           for test in tests}
