@@ -16,16 +16,40 @@ namespace {
 /// Only a prefix of long words is compared: the distance costs the product of the lengths.
 constexpr std::size_t kMaxCompared = 100;
 
-/// Names that other programs and books use for parts of our keys.
-constexpr std::string_view kOtherNames =
-    " E=young_modulus young=young_modulus youngs_modulus=young_modulus elastic_modulus=young_modulus"
-    " modulus=young_modulus G=young_modulus shear_modulus=young_modulus nu=poisson_ratio "
-    "poisson=poisson_ratio"
-    " poissons_ratio=poisson_ratio mu=friction cof=friction friction_coefficient=friction R=radius"
-    " diameter=radius load=normal normal_load=normal normal_force=normal force=normal weight=normal"
-    " torque=moment twist_angle=twist rotation=twist twist_deg=twist coating=layer resolution=cells"
-    " yield=yield_stress yield_strength=yield_stress n=cells"
-    " max=below min=above limit=below bound=below ";
+/// Names that other programs and books use, and the parts of our keys that mean the same.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[]{{"E", "young_modulus"},
+                                                                      {"young", "young_modulus"},
+                                                                      {"youngs_modulus", "young_modulus"},
+                                                                      {"elastic_modulus", "young_modulus"},
+                                                                      {"modulus", "young_modulus"},
+                                                                      {"G", "young_modulus"},
+                                                                      {"shear_modulus", "young_modulus"},
+                                                                      {"nu", "poisson_ratio"},
+                                                                      {"poisson", "poisson_ratio"},
+                                                                      {"poissons_ratio", "poisson_ratio"},
+                                                                      {"mu", "friction"},
+                                                                      {"cof", "friction"},
+                                                                      {"friction_coefficient", "friction"},
+                                                                      {"R", "radius"},
+                                                                      {"diameter", "radius"},
+                                                                      {"load", "normal"},
+                                                                      {"normal_load", "normal"},
+                                                                      {"normal_force", "normal"},
+                                                                      {"force", "normal"},
+                                                                      {"weight", "normal"},
+                                                                      {"torque", "moment"},
+                                                                      {"twist_angle", "twist"},
+                                                                      {"rotation", "twist"},
+                                                                      {"twist_deg", "twist"},
+                                                                      {"coating", "layer"},
+                                                                      {"resolution", "cells"},
+                                                                      {"yield", "yield_stress"},
+                                                                      {"yield_strength", "yield_stress"},
+                                                                      {"n", "cells"},
+                                                                      {"max", "below"},
+                                                                      {"min", "above"},
+                                                                      {"limit", "below"},
+                                                                      {"bound", "below"}};
 
 /// How the value or the place differs.
 std::string_view note_on(std::string_view other) {
@@ -38,10 +62,8 @@ std::string_view note_on(std::string_view other) {
 
 /// The part of our keys that a part of a key means; itself where the table does not have it.
 std::string meant_by(const std::string& part) {
-  const std::size_t found = kOtherNames.find(fmt::format(" {}=", part));
-  if (found == std::string_view::npos) return part;
-  const std::size_t begin = kOtherNames.find('=', found) + 1;
-  return std::string(kOtherNames.substr(begin, kOtherNames.find(' ', begin) - begin));
+  const auto* const found = std::ranges::find(kOtherNames, part, [](const auto& each) { return each.first; });
+  return found == std::end(kOtherNames) ? part : std::string(found->second);
 }
 
 std::size_t last_part(const std::string& key) { return key.rfind('.') + 1; }
