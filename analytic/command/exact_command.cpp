@@ -12,10 +12,12 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "analytic/command/exact_answer.hpp"
+#include "analytic/stresses/largest_stress.hpp"
 
 namespace slipstick::analytic {
 
@@ -38,6 +40,9 @@ constexpr std::array kGiven{
           certified::Quantity::stick_complement},
     Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist, certified::Quantity::twist},
 };
+
+/// Given to --at: the point of the largest von Mises stress.
+constexpr std::string_view kLargest = "largest";
 
 /// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
 struct Options {
@@ -113,17 +118,25 @@ std::size_t given(const Options& options) {
   throw std::invalid_argument("exact: no state given");
 }
 
-/// The stresses at the points asked for.
+/// The stresses at the points asked for. front: the radius at which slip ends.
 template <class State>
-AtPoints stresses(const Options& options, const State& state, const Profile& profile) {
+AtPoints stresses(const Options& options, const State& state, double front, const Profile& profile) {
   return naming("--at", [&] {
+    const StressField field(state, profile);
     std::vector<BodyPoint> points;
     for (const std::string& text : options.at) {
+      if (text == kLargest) {
+        if (!options.friction) throw std::domain_error("\"largest\" is allowed with --friction");
+        const LargestStress largest =
+            largest_stress(field, &Severity::von_mises, *options.friction, options.poisson, front);
+        points.push_back(largest.at);
+        continue;
+      }
       const auto comma = std::min(text.find(','), text.size());
       points.push_back(
           {number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
     }
-    return at_points({state, profile}, points, options.poisson, options.friction);
+    return at_points(field, points, options.poisson, options.friction);
   });
 }
 
@@ -143,7 +156,7 @@ int run(const Options& options, std::ostream& out, Json& result) {
     LoadingHistory history(profile);
     for (CyclePoint& point : answer.history) {
       history.load_to(point.state.moment_ratio);
-      point.stresses = stresses(options, history, profile);
+      point.stresses = stresses(options, history, history.state().stick_ratio, profile);
     }
     return give(answer, out, result);
   }
@@ -162,12 +175,12 @@ int run(const Options& options, std::ostream& out, Json& result) {
     return naming(from.option, [&] { return from.state(value, any); });
   };
   StateAnswer answer = answer_state(exact, state_of, at, options.unload_to);
-  answer.stresses = stresses(options, answer.numbers.state, profile);
+  answer.stresses = stresses(options, answer.numbers.state, answer.numbers.state.stick_ratio, profile);
   if (answer.unloaded) {
     LoadingHistory history(profile);
     history.load_to(answer.numbers.state.moment_ratio);
     history.load_to(*options.unload_to);
-    answer.unloaded->stresses = stresses(options, history, profile);
+    answer.unloaded->stresses = stresses(options, history, history.state().stick_ratio, profile);
   }
   return give(answer, out, result);
 }
@@ -188,7 +201,9 @@ void add_state_options(CLI::App& exact, Options& options) {
                                          "M/M_lim to unload to from the state, normal load constant");
   unload->excludes(history);
   CLI::Option* at =
-      exact.add_option("--at", options.at, "r,z over a, z the depth: stresses there; once for each point");
+      exact.add_option("--at", options.at,
+                       "r,z over a, z the depth: stresses there; \"largest\" finds the point of "
+                       "the largest von Mises stress; once for each point");
   exact.add_option("--poisson", options.poisson, "nu of the body whose stresses are asked for")
       ->check(CLI::Range(-1.0, 0.5))
       ->needs(at)
@@ -231,7 +246,7 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
   exact->footer(
       "Examples: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8\n"
       "          slipstick exact --moment-ratio 0.5 --certified 50\n"
-      "          slipstick exact --moment-ratio 0.9 --at 0,0.48 --at 0.5,0 --friction 0.3\n"
+      "          slipstick exact --moment-ratio 0.9 --at 0,0.48 --at largest --friction 0.3\n"
       "          slipstick exact --profile cone --history 0.8,-0.8,0.8 --json loop.json");
   return [options](std::ostream& out, Json& result) { return run(*options, out, result); };
 }

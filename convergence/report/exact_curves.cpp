@@ -11,6 +11,7 @@
 
 #include "analytic/cycle.hpp"
 #include "analytic/paper_equations.hpp"
+#include "analytic/stresses/largest_stress.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/results/result_parts.hpp"
 
@@ -137,6 +138,43 @@ Json cycle_energy() {
   return rows;
 }
 
+/// Where the paper's sphere yields first, nu = 0.3: the largest von Mises stress over p0 against moment and
+/// friction, and maps of it without torsion and with.
+Json first_yield() {
+  using analytic::Severity;
+  constexpr double kPoisson = 0.3;
+  Json curves = Json::array();
+  for (const double friction : {0.3, 0.4, 0.5, 0.7, 1.0}) {
+    Json rows = Json::array();
+    for (const double load : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}) {
+      const TorsionState state = analytic::from_moment_ratio(load);
+      const analytic::LargestStress found = analytic::largest_stress(
+          {state, analytic::hertz_profile()}, &Severity::von_mises, friction, kPoisson, state.stick_ratio);
+      rows.push_back({{"moment_ratio", load},
+                      {"von_mises", found.value},
+                      {"radius", found.at.radius},
+                      {"depth", found.at.depth}});
+    }
+    curves.push_back({{"friction", friction}, {"rows", rows}});
+  }
+  Json maps = Json::array();
+  for (const double load : {0.0, 0.9}) {
+    const analytic::StressField field(analytic::from_moment_ratio(load), analytic::hertz_profile());
+    Json map{{"friction", 0.5}, {"moment_ratio", load}, {"spacing", 0.04}, {"von_mises", Json::array()}};
+    for (int i = 0; i <= 25; ++i) {
+      Json row = Json::array();
+      for (int j = 0; j <= 35; ++j) {
+        const analytic::BodyPoint at{0.04 * j, 0.04 * i};
+        row.push_back(
+            analytic::severity(field.by_pressure(at, kPoisson), field.by_torsion(at), 0.5).von_mises);
+      }
+      map["von_mises"].push_back(row);
+    }
+    maps.push_back(map);
+  }
+  return {{"poisson", kPoisson}, {"curves", curves}, {"maps", maps}};
+}
+
 namespace paper = analytic::paper;
 
 std::string jump_at_stick_radius() {
@@ -201,7 +239,8 @@ Json exact_curves() {
           {"approximation_table", approximation_rows({0.01, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.99})},
           {"bodies", bodies()},
           {"loop", loop()},
-          {"cycle_energy", cycle_energy()}};
+          {"cycle_energy", cycle_energy()},
+          {"first_yield", first_yield()}};
 }
 
 Json errata(const Json& circle, const std::vector<Json>& ellipses) {

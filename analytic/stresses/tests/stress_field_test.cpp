@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "analytic/stresses/largest_stress.hpp"
+
 namespace slipstick::analytic {
 namespace {
 
@@ -38,6 +40,54 @@ TEST(StressField, RefusesPointsOutsideTheBodyAndInfiniteStresses) {
   EXPECT_THROW(sphere.by_pressure({0, 0}, 0.51), std::domain_error);
   const StressField punch(from_moment_ratio(0.9, flat_punch_profile()), flat_punch_profile());
   EXPECT_THROW(punch.by_pressure({1, 0}, 0.3), std::domain_error);
+}
+
+// Hertz's pressure: von Mises' stress on the axis has a closed form (Huber 1904), and its largest value is a
+// zero of that form's derivative, here to 12 digits. Torsion adds nothing on the axis.
+TEST(LargestStress, IsThatOnTheAxisUnderASphereWithoutFriction) {
+  const auto on_axis = [](double z) { return 1.5 / (1 + z * z) - 1.3 * (1 - z * std::atan(1 / z)); };
+  double low = 0.3;
+  double high = 0.6;
+  while (high - low > 1e-8) {
+    const double third = (high - low) / 3;
+    if (on_axis(low + third) > on_axis(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  const StressField field(from_moment_ratio(0.9), hertz_profile());
+  for (const double friction : {0.0, 0.3}) {
+    const LargestStress found = largest_stress(field, &Severity::von_mises, friction, 0.3, 0.496);
+    EXPECT_NEAR(found.value, on_axis(low), 1e-12);
+    EXPECT_NEAR(found.at.depth, low, 1e-6);
+    EXPECT_NEAR(found.at.radius, 0, 1e-6);
+  }
+}
+
+// At gross slip the surface next to the axis has sigma_tz = mu p0, sigma_rt = -mu p0/2 and the principal
+// stresses of the pressure there, so that von Mises' stress is p0 sqrt((1/2 - nu)^2 + 15 mu^2/4).
+TEST(LargestStress, GoesToTheSurfaceNextToTheAxisTowardsGrossSlip) {
+  const double friction = 0.6;
+  const double limit = std::sqrt(0.04 + 3.75 * friction * friction);
+  double before = 1;
+  for (const double deficit : {1e-3, 1e-6, 1e-9}) {
+    const TorsionState state = from_moment_deficit(deficit);
+    const LargestStress found =
+        largest_stress({state, hertz_profile()}, &Severity::von_mises, friction, 0.3, state.stick_ratio);
+    EXPECT_EQ(found.at.depth, 0);
+    const double distance = std::abs(found.value / limit - 1);
+    EXPECT_LT(distance, before);
+    before = distance / 2;
+  }
+  EXPECT_LT(before, 1e-3);
+}
+
+TEST(LargestStress, IsRefusedWhereItIsInfiniteOrUnknown) {
+  for (const Profile* profile : {&flat_punch_profile(), &cone_profile()}) {
+    const TorsionState state = from_moment_ratio(0.9, *profile);
+    EXPECT_THROW(largest_stress({state, *profile}, &Severity::von_mises, 0.3, 0.3, state.stick_ratio),
+                 std::domain_error);
+  }
 }
 
 }  // namespace
