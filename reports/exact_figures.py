@@ -146,6 +146,44 @@ def friction_laws(report, data_dir):
         figure, numbers)
 
 
+def first_yield(report, data_dir):
+    """The normal load at first yield against moment and friction, and where the largest stress is."""
+    data = value(report, "first_yield")
+    figure, (left, *maps) = style.panels(1, 3, 3.4, width_ratios=[1.3, 1, 1])
+    numbers = []
+    for curve, colour in zip(rows(data, "curves"), (style.BLACK, style.BLUE, style.GREEN, style.PURPLE, style.VERMILION)):
+        table, friction = rows(curve, "rows"), number(curve, "friction")
+        load, stress, depth = (column(table, key) for key in ("moment_ratio", "von_mises", "depth"))
+        smallest = stress[np.argmax(depth)]  # below the axis, where torsion adds nothing
+        share, surface = (smallest / stress) ** 3, depth < 1e-3
+        left.plot(load, share, color=colour, label=f"μ = {friction:g}")
+        left.plot(load[surface], share[surface], "o", color=colour, markersize=4)
+        first = f"from {LIMIT}{plain(load[surface][0])} on" if surface.any() else "at no moment drawn"
+        numbers.append((f"μ = {friction:g}: first yield at the surface", first))
+    left.plot([], [], "o", color=style.GREY, markersize=4, label="at the surface")
+    left.set(xlabel=LOAD_LABEL, ylabel="normal load at first yield,\nover that without torsion", xlim=(0, 1), ylim=(0, 1.05))
+    drawn = [np.array(entry["von_mises"]) for entry in rows(data, "maps")]
+    levels = np.arange(0, max(stress.max() for stress in drawn) + 0.1, 0.1)
+    for axis, entry, stress in zip(maps, rows(data, "maps"), drawn):
+        radius, depth = (number(entry, "spacing") * np.arange(count) for count in stress.shape[::-1])
+        filled = axis.contourf(radius, depth, stress, levels, cmap="viridis")
+        row, at = np.unravel_index(stress.argmax(), stress.shape)
+        axis.plot(radius[at], depth[row], "*", color=style.VERMILION, markersize=13, markeredgecolor="white", clip_on=False)
+        moment = number(entry, "moment_ratio")
+        axis.set_title("without torsion" if moment == 0 else f"$M/M_\\mathrm{{lim}}$ = {moment:g}, μ = {number(entry, 'friction'):g}")
+        axis.set(xlabel="radius $r/a$", aspect="equal", ylim=(1, 0), ylabel="depth $z/a$" if axis is maps[0] else "")
+    figure.colorbar(filled, ax=maps, label="von Mises stress / $p_0$", shrink=0.8, ticks=levels[::2], format="%.1f")
+    style.legend_on_top(figure, left.get_legend_handles_labels()[0], 6)
+    return FigureEntry(
+        "Torsion moves the place of first yield from below the axis to the surface, where the friction is above about 0.3.",
+        f"Exact, under a sphere, with Poisson’s ratio {number(data, 'poisson'):g}. Without torsion a sphere yields first below the axis "
+        "(Huber, 1904), where torsion adds no stress. The tractions of the slip ring add most at its inner edge, at the surface. The "
+        "normal load at first yield grows with the cube of the yield stress over the largest von Mises stress. Stars: the largest stress.",
+        "Left, the normal load at first yield against moment for five frictions: each curve is flat at one, then falls from the moment "
+        "at which the place jumps to the surface. Right, two maps of von Mises’ stress by radius and depth: without torsion the largest "
+        "is below the axis, at half the contact radius, with torsion it is at the surface.", figure, numbers)
+
+
 def _draw_bodies(axis, bodies):
     """Twist and load of each body; returns the limiting moments, as numbers of a FigureEntry."""
     limits, ends = [], []

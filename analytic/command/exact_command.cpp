@@ -42,7 +42,7 @@ constexpr std::array kGiven{
 };
 
 /// Given to --at: the point of the largest von Mises stress.
-constexpr std::string_view kLargest = "largest";
+constexpr std::string_view kMostStressed = "largest";
 
 /// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
 struct Options {
@@ -125,7 +125,7 @@ AtPoints stresses(const Options& options, const State& state, double front, cons
     const StressField field(state, profile);
     std::vector<BodyPoint> points;
     for (const std::string& text : options.at) {
-      if (text == kLargest) {
+      if (text == kMostStressed) {
         if (!options.friction) throw std::domain_error("\"largest\" is allowed with --friction");
         const LargestStress largest =
             largest_stress(field, &Severity::von_mises, *options.friction, options.poisson, front);

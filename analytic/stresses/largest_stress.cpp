@@ -1,5 +1,7 @@
 #include "analytic/stresses/largest_stress.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -57,10 +59,15 @@ LargestStress largest_stress(const StressField& field, double Severity::*measure
     }
     return best;
   };
+  const Profile& profile = field.profile();
+  const bool is_finite =
+      profile.pressure(1) == 0 && std::isfinite(profile.pressure(0)) && std::isfinite(stress({0, 0}).value);
+  if (!is_finite)
+    throw std::domain_error(fmt::format(
+        "profile {}; allowed: pressures that are finite and end at zero, where no stress is infinite",
+        profile.name()));
   std::vector<LargestStress> samples;
   for (const BodyPoint at : sample_points(stick_ratio)) samples.push_back(stress(at));
-  if (!std::ranges::all_of(samples, [](const auto& sample) { return std::isfinite(sample.value); }))
-    throw std::domain_error("the largest stress is known for pressures that are finite and end at zero");
   std::ranges::stable_sort(samples, [&](const auto& a, const auto& b) { return smaller(b, a); });
   std::vector<LargestStress> starts;
   for (const LargestStress& sample : samples) {

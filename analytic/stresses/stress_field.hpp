@@ -56,6 +56,7 @@ class StressField {
   /// Throw std::domain_error for points outside the body, and where the stress is infinite.
   PressureStress by_pressure(BodyPoint point, double poisson) const;
   TorsionStress by_torsion(BodyPoint point) const;
+  const Profile& profile() const { return *profile_; }
 
  private:
   struct Part {

@@ -7,6 +7,7 @@
 
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"
+#include "analytic/stresses/largest_stress.hpp"
 #include "analytic/stresses/stress_field.hpp"
 #include "analytic/torsion.hpp"
 #include "interfaces/c/boundary.hpp"
@@ -84,17 +85,26 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
-analytic::StressField stress_field(const Profile& profile, int given, std::span<const double> values,
-                                   double friction) {
+/// front: the radius at which slip ends.
+struct StressedBody {
+  analytic::StressField field;
+  double front;
+};
+
+StressedBody stressed_body(const Profile& profile, int given, std::span<const double> values,
+                           double friction) {
   if (!(friction >= 0 && std::isfinite(friction)))
     throw std::domain_error(fmt::format("friction = {}; allowed: 0 or more, finite", friction));
   if (values.size() != 1 && given != SLIPSTICK_MOMENT_RATIO)
     throw std::invalid_argument(
         fmt::format("{} values; allowed: 1, or a history of moment ratios", values.size()));
-  if (values.size() == 1 && values[0] >= 0) return {state_by(given)(values[0], profile), profile};
+  if (values.size() == 1 && values[0] >= 0) {
+    const TorsionState state = state_by(given)(values[0], profile);
+    return {{state, profile}, state.stick_ratio};
+  }
   analytic::LoadingHistory history(profile);
   for (const double moment_ratio : values) history.load_to(moment_ratio);
-  return {history, profile};
+  return {{history, profile}, history.state().stick_ratio};
 }
 
 slipstick_stress stress_at(const analytic::StressField& field, analytic::BodyPoint at, double friction,
@@ -222,11 +232,27 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
                              const double* depths, slipstick_stress* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const analytic::StressField field =
-        c::stress_field(shape, given, c::array(values, n_values, "values"), friction);
+        c::stressed_body(shape, given, c::array(values, n_values, "values"), friction).field;
     const double* depth = c::array(depths, n, "depths").data();
     c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"), [&](double radius) {
       return c::stress_at(field, {radius, *depth++}, friction, poisson);
     });
+  });
+}
+
+int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
+                                   double friction, double poisson, int measure,
+                                   slipstick_largest_stress* result) {
+  using analytic::Severity;
+  constexpr std::array kMeasures{&Severity::von_mises, &Severity::tresca, &Severity::tension};
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    c::require(result, "result");
+    if (!(measure >= 0 && measure < static_cast<int>(kMeasures.size())))
+      throw std::invalid_argument(fmt::format("measure = {}; allowed: 0, 1, 2", measure));
+    const auto body = c::stressed_body(shape, given, c::array(values, n_values, "values"), friction);
+    const auto [value, at] = analytic::largest_stress(body.field, kMeasures.at(static_cast<size_t>(measure)),
+                                                      friction, poisson, body.front);
+    *result = {value, at.radius, at.depth};
   });
 }
 

@@ -135,6 +135,17 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
                              double friction, double poisson, size_t n, const double* radii,
                              const double* depths, slipstick_stress* results);
 
+/* The largest stress in the body, over p0, and where it is. measure: 0 von Mises, 1 Tresca, 2 tension. Fails
+ * where a stress is infinite or not known. */
+typedef struct slipstick_largest_stress {
+  double value;
+  double radius; /* r/a */
+  double depth;  /* z/a */
+} slipstick_largest_stress;
+int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
+                                   double friction, double poisson, int measure,
+                                   slipstick_largest_stress* result);
+
 /* The contact under a normal load, in SI units. shape: "hertz": sphere radius; "cone": slope;
  * "flat_punch": radius; "power:N": the gap's coefficient; "rounded_punch": flat radius, corner radius. */
 typedef struct slipstick_indentation {

@@ -123,6 +123,10 @@ def small_paper():
                           ((0.0, 0.0), (0.8, 0.4), (0.0, 0.1), (-0.8, -0.4), (0.0, -0.1), (0.8, 0.4))]},
         "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
                          for x in (0.05, 0.1, 0.2, 0.5)],
+        "first_yield": {"poisson": 0.3, "curves": [{"friction": 0.5, "rows": [
+            {"moment_ratio": x, "von_mises": 0.62 + max(0, x - 0.5), "radius": x, "depth": 0.48 if x < 0.6 else 0.0} for x in loads]}],
+            "maps": [{"friction": 0.5, "moment_ratio": x, "spacing": 0.5, "von_mises": [[0.1, 0.2, 0.1], [0.6, 0.3, 0.1]]}
+                     for x in (0.0, 0.9)]},
         "hard": hard(),
         "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
                                             for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},

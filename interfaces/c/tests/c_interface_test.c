@@ -110,6 +110,12 @@ static void test_stresses(void) {
   check(slipstick_exact_traction("hertz", 0, value, 1, &radii[1], &traction) == SLIPSTICK_OK &&
             near(stress[1].tz, traction, 1e-13),
         "sigma_tz is the traction at the surface");
+  slipstick_largest_stress largest;
+  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0.0, 0.3, 1, &largest) == SLIPSTICK_OK &&
+            near(largest.value, 0.62, 1e-3) && near(largest.depth, 0.481, 1e-3),
+        "the largest Tresca stress of a sphere");
+  check(slipstick_exact_largest_stress("hertz", 0, 1, &value, 0.0, 0.3, 3, &largest) == SLIPSTICK_BAD_INPUT,
+        "a measure that does not exist");
 }
 
 static void test_refusals(void) {

@@ -41,6 +41,8 @@ CYCLE_STATE = np.dtype([(name, np.float64) for name in (
 STRESS = np.dtype([(name, np.float64) for name in (
     "rr", "tt", "zz", "rz", "rt", "tz", "von_mises", "tresca", "tension")])
 
+LARGEST_STRESS = np.dtype([(name, np.float64) for name in ("value", "radius", "depth")])
+
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "version": (c_char_p, []),
     "message": (c_char_p, []),
@@ -54,6 +56,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "exact_curve": (c_int, [c_char_p, c_size_t, c_void_p, c_size_t, c_void_p]),
     "exact_history_traction": (c_int, [c_char_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
     "exact_stresses": (c_int, [c_char_p, c_int, c_size_t, c_void_p, c_double, c_double, c_size_t, c_void_p, c_void_p, c_void_p]),
+    "exact_largest_stress": (c_int, [c_char_p, c_int, c_size_t, c_void_p, c_double, c_double, c_int, c_void_p]),
     "exact_indentation": (c_int, [c_char_p, c_double, c_double, c_size_t, c_void_p, POINTER(Indentation)]),
     "solve": (c_int, [c_char_p, c_char_p, c_size_t, POINTER(c_char_p), c_double, PROGRESS, c_void_p, POINTER(c_void_p)]),
     "solution_free": (None, [c_void_p]),

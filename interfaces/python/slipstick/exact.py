@@ -216,25 +216,6 @@ def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | 
 _MEASURES = ("von_mises", "tresca", "tension")
 
 
-def _climb(function: Any, starts: Any, step: float) -> tuple[float, Any]:
-    """The largest value of a function of points (r, z) that is near one of some starts, and where: each start goes to the best of
-    eight neighbours, or halves its step."""
-    finest = 1e-8  # its square is no part of the value
-    around = np.array([(dr, dz) for dr in (-1, 0, 1) for dz in (-1, 0, 1) if dr or dz], dtype=np.float64)
-    points, values = starts, function(starts)
-    steps = np.full(len(points), step)
-    while steps.max() > finest:
-        moved = np.maximum(0, points[:, None, :] + steps[:, None, None] * around)
-        found = function(moved.reshape(-1, 2)).reshape(len(points), -1)
-        best = found.argmax(axis=1)
-        rows = np.arange(len(points))
-        better = found[rows, best] > values
-        points = np.where(better[:, None], moved[rows, best], points)
-        values = np.where(better, found[rows, best], values)
-        steps = np.where(better, steps, steps / 2)
-    return values.max(), points[values.argmax()]
-
-
 def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float | None = None, stick_ratio: float | None = None,
                    stick_complement: float | None = None, twist: float | None = None, history: Sequence[float] | None = None,
                    friction: float = 0.0, poisson: float = 0.3, measure: str = "von_mises", profile: str = "hertz") -> np.record:
@@ -247,25 +228,13 @@ def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float |
     """
     if measure not in _MEASURES:
         raise InputError(f"measure = {measure!r}; allowed: {', '.join(_MEASURES)}")
-    if profile == "constant" or pressure(1.0, profile) != 0 or not np.isfinite(pressure(0.0, profile)):
-        raise InputError(f"profile = {profile!r}; allowed: pressures that are finite and end at zero, where no stress is infinite")
-    names: dict[str, Values] = {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                                "stick_complement": stick_complement, "twist": twist}
-    front = [] if history is not None else [_find("stick_ratio", profile, names)]
-
-    def function(points: Any) -> Any:
-        return _stresses(points[:, 0], points[:, 1], _state(names, history), friction, poisson, profile)[measure]
-    # Depths crowd at the surface, where torsion adds a maximum of its own.
-    spacing, count = 0.05, 4
-    radii = np.concatenate([spacing * np.arange(26), front])
-    depths = np.concatenate([[0.0, 0.02], spacing * np.arange(1, 13), [0.7, 0.8, 1.0]])
-    samples = np.stack(np.meshgrid(radii, depths), axis=-1).reshape(-1, 2)
-    starts: list[Any] = []
-    for point in samples[np.argsort(-function(samples), kind="stable")]:
-        if len(starts) < count and all(np.hypot(*(point - other)) > 3 * spacing for other in starts):
-            starts.append(point)
-    value, (radius, depth) = _climb(function, np.array(starts), spacing / 2)
-    return np.rec.fromrecords([(value, radius, depth)], names="value,radius,depth")[0]
+    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                            "stick_complement": stick_complement, "twist": twist}, history)
+    found = np.empty(1, _library.LARGEST_STRESS)
+    _library.checked(_library.function("exact_largest_stress")(
+        _library.encoded(profile), given, values.size, _library.address(values), friction, poisson, _MEASURES.index(measure),
+        _library.address(found)))
+    return found.view(np.recarray)[0]
 
 
 def first_yield(moment_ratio: npt.ArrayLike, friction: npt.ArrayLike, poisson: float = 0.3, measure: str = "von_mises",
