@@ -1,13 +1,13 @@
-"""LAMMPS, `lmp`: two equal spheres of twice the radius are one of this radius on a half-space. The rotation is imposed."""
+"""LAMMPS, `lmp`: two equal spheres of twice the radius are one of this radius on a half-space. Motions are imposed, and
+loads by a servo."""
 
-import math
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from stepping import STEP, turned
+from stepping import STEP, answered, at_rest
 
 
 def runs(sphere):
@@ -16,25 +16,41 @@ def runs(sphere):
     version = subprocess.run(["lmp", "-h"], capture_output=True, text=True).stdout.split("Simulator - ")[-1].split("\n")[0]
     law = sphere.law["programs"]["lammps"]
     springs = f"sds {law['k_twist']} 0.0 {law['mu_twist']}"
-    own = twisted(sphere, "marshall", f"mindlin NULL 0.0 {sphere.friction}")
-    ours = twisted(sphere, springs, f"linear_nohistory 0.0 {sphere.friction}")
-    return version, [("its own: twisting marshall", own), (f"slipstick law: twisting {springs}", ours)]
+    return version, [("its own: twisting marshall", twisted(sphere, "marshall")),
+                     (f"slipstick law: twisting {springs}", twisted(sphere, springs))]
 
 
-def twisted(sphere, twisting, tangential):
-    def respond(path, _):
-        radius, turns, steps = turned(sphere, path)
-        values = {"distance": 4 * sphere.radius - radius**2 / sphere.radius, "diameter": 4 * sphere.radius, "young": sphere.young,
-                  "poisson": sphere.poisson, "twisting": twisting, "tangential": tangential, "every": steps, "step": STEP}
+def twisted(sphere, twisting):
+    def respond(path):
+        rest, radius = at_rest(sphere, path), 2 * sphere.radius
+        values = {"diameter": 2 * radius, "young": sphere.young, "poisson": sphere.poisson, "friction": sphere.friction,
+                  "twisting": twisting, "step": STEP, "distance": 2 * radius - rest.radius[0]**2 / sphere.radius}
         words = ["lmp", "-in", Path(__file__).with_name("twist.lmp").resolve(), "-log", "none"]
         for name, value in values.items():
             words += ["-var", name, value]
-        moves = [f"rotate 0 0 0 0 0 {math.copysign(1, turn)} {2 * math.pi * steps * STEP / abs(turn)}" if turn else "linear 0 0 0"
-                 for turn in turns]
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "turns.lmp").write_text("".join(f"fix high high move {move}\nrun {steps}\nunfix high\n" for move in moves))
+            (Path(folder) / "rows.lmp").write_text("".join(rows_of(sphere, rest)))
             subprocess.run([str(word) for word in words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-            found = dict(line.split() for line in (Path(folder) / "out.txt").read_text().splitlines()[1:])
-        moment = np.array([0.0, *(float(found[str(steps * (row + 1))]) for row in range(len(turns)))])
-        return {"moment": math.copysign(1, moment[1] * turns[0]) * moment}
+            return answered(sphere, path, np.loadtxt(Path(folder) / "out.txt", ndmin=2))
     return respond
+
+
+def rows_of(sphere, rest):
+    """Commands of each row. The upper sphere turns about the normal; the lower one turns about the second axis of the plane, so that its
+    surface slides along the first one and the normal stays."""
+    shear = sphere.young / (4 * (1 + sphere.poisson))
+    for contact, (about, along) in zip(rest.radius.tolist(), rest.given.tolist()):
+        yield f"set atom 2 z {4 * sphere.radius - contact**2 / sphere.radius}\n"
+        if rest.holds:
+            stiffness = 16 / 3 * shear * contact**3, 16 * shear * contact / (2 - sphere.poisson)
+            rate = [f"$(({load} - v_{name})/{each * STEP}:%.17g)" for load, name, each in
+                    zip((about, along), ("moment", "force"), stiffness)]
+            times, count = rest.steps, 1
+        else:
+            rate = [motion / (rest.steps * STEP) for motion in (about, along)]
+            times, count = 1, rest.steps
+        yield (f"variable turn equal {rate[0]}\nvariable slide equal {rate[1]}\nset atom 2 omega 0 0 ${{turn}}\n"
+               f"set atom 1 omega 0 $(-v_slide/{2 * sphere.radius}) 0\nrun {count} pre no post no\n"
+               f"variable twist equal $(v_twist+{count}*v_step*v_turn:%.17g)\n"
+               f"variable path equal $(v_path+{count}*v_step*v_slide:%.17g)\n") * times
+        yield 'print "$(v_moment:%.17g) $(v_force:%.17g) ${twist} ${path}" append out.txt screen no\n'

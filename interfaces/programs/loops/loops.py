@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--board FILE]: simulators twist the sphere of a scene there and back under its
+"""loops.py PROGRAM SCENE [--json FILE] [--only NAME] [--cases]: simulators twist the sphere of a scene there and back under its
 normal load, with their own friction and with the law that `slipstick law` writes for them. `slipstick check` judges each loop; the result
-has stiffness at the first step, largest moment and energy lost, relative to the exact values. With --board they also run the cases of
-slipstick.conformance: FILE.md and FILE.json have programs by cases. Reports simulators that are missing."""
+has stiffness at the first step, largest moment and energy lost, relative to the exact values. With --cases they also run the cases of
+slipstick.conformance, with a row for each. Reports simulators that are missing."""
 
 import argparse
 import importlib
@@ -11,7 +11,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 import tomllib
 from pathlib import Path
 from types import SimpleNamespace
@@ -48,13 +47,14 @@ def loop_path(sphere, rows, seconds):
     """A loop in five quarters, as a path of slipstick.conformance: the moment up to 0.9 of the limit, the exact twist in proportion."""
     part = np.interp(np.arange(5 * rows + 1), rows * np.array([0, 1, 3, 5]), [0, 1, -1, 1])
     return SimpleNamespace(time=seconds * np.arange(len(part)) / rows, normal_load=np.full(len(part), sphere.load), force=0 * part,
-                           moment=0.9 * sphere.limit * part, twist=sphere.rotation * part, displacement=0 * part, shortest=seconds / rows)
+                           moment=0.9 * sphere.limit * part, twist=sphere.rotation * part, displacement=0 * part, shortest=seconds / rows,
+                           responses=("moment", "twist"))
 
 
 def judged(sphere, name, version, friction, respond):
     """Writes the loop for `check`, and returns its verdict."""
     path = loop_path(sphere, 400, 4.0)
-    rows = np.column_stack([{**vars(path), **respond(path, False)}[column] for column in ("moment", "twist")])
+    rows = np.column_stack([{**vars(path), **respond(path)}[column] for column in ("moment", "twist")])
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "loop.csv"
         file.write_text("moment,rotation\n" + "".join(f"{moment:.10e},{rotation:.10e}\n" for moment, rotation in rows))
@@ -64,29 +64,34 @@ def judged(sphere, name, version, friction, respond):
             "largest_moment_over_limit": largest[0] / sphere.limit, "largest_rotation": largest[1], "loads": verdict["loads"]}
 
 
+def response(case, respond):
+    """The columns with which a simulator answers a case, and the largest error of loads that a servo imposes, over their limits."""
+    from slipstick import conformance
+    parts = []
+    for run in np.unique(case.run):
+        rows = {column: getattr(case, column)[case.run == run] for column in conformance.COLUMNS}
+        shortest = np.diff(case.time)[np.diff(case.run) == 0].min()
+        parts.append(respond(SimpleNamespace(**rows, shortest=shortest, responses=case.responses)))
+    missed = max((part.pop("missed", 0.0) for part in parts))
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0] if name in case.responses}, missed
+
+
+def cpu_seconds():
+    return sum(os.times()[:4])
+
+
 def on_cases(sphere, name, version, friction, respond):
-    """A row of the board."""
+    """Rows of the board: a verdict on each case."""
     from slipstick import conformance
     contact = conformance.Sphere(sphere.radius, sphere.load, sphere.friction, sphere.young, sphere.poisson)
-    started, found = time.process_time() + os.times().children_user, {}
     for case in conformance.cases(contact):
-        try:
-            parts = []
-            for run in np.unique(case.run):
-                rows = {column: getattr(case, column)[case.run == run] for column in conformance.COLUMNS}
-                path = SimpleNamespace(**rows, shortest=np.diff(case.time)[np.diff(case.run) == 0].min())
-                parts.append(respond(path, "displacement" not in case.responses and "twist" not in case.responses))
-            whole = {column: np.concatenate([part[column] for part in parts]) for column in parts[0]}
-            given = {column: whole[column] for column in case.responses if column in whole}
-            if not given:
-                raise LookupError(f"its adapter imposes the {case.responses[0]}")
-            found[case.id] = conformance.judge(case, given)
-        except LookupError as missing:
-            found[case.id] = str(missing)
-        verdict = found[case.id]
-        print(f"  {case.id:<16} " + (verdict if isinstance(verdict, str) else f"{verdict.verdict}: {verdict.why}"))
-    return {"program": name, "version": version, "friction": friction, "cases": found,
-            "seconds": time.process_time() + os.times().children_user - started}
+        started = cpu_seconds()
+        given, missed = response(case, respond)
+        verdict = conformance.judge(case, given)
+        print(f"  {case.id:<16} {verdict.verdict}: {verdict.why}")
+        yield {"kind": "case", "on": case.id, "program": name, "version": version, "variant": friction, "verdict": verdict.verdict,
+               "measure": verdict.measure, "number": verdict.number if np.isfinite(verdict.number) else None, "shown": verdict.text,
+               "cause": verdict.cause, "why": verdict.why, "missed": missed, "cpu_seconds": cpu_seconds() - started}
 
 
 def main():
@@ -95,7 +100,7 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--json")
     parser.add_argument("--only", choices=SIMULATORS)
-    parser.add_argument("--board", help="FILE.md and FILE.json of the cases; an earlier FILE.json shows what changed")
+    parser.add_argument("--cases", action="store_true", help="run the cases of slipstick.conformance too")
     arguments = parser.parse_args()
     sys.path.insert(0, str(Path(arguments.program).resolve().parent / "python"))
     sphere, found, rows = Sphere(arguments.program, arguments.scene), [], []
@@ -110,17 +115,11 @@ def main():
             found.append(row)
             print(f"{name} {version}, {friction}\n  largest moment {row['largest_moment_over_limit']:.5g} of the exact limit, largest "
                   f"rotation {row['largest_rotation']:.4g} rad (exact at 0.9: {sphere.rotation:.4g})\n  {row['verdict']}: {row['why']}")
-            if arguments.board:
-                rows.append(on_cases(sphere, name, version, friction, respond))
+            if arguments.cases:
+                rows += on_cases(sphere, name, version, friction, respond)
     if arguments.json:
-        text = {"scene": arguments.scene, "limit": sphere.limit, "law": sphere.law["programs"], "loops": found}
+        text = {"scene": arguments.scene, "limit": sphere.limit, "law": sphere.law["programs"], "loops": found, "rows": rows}
         Path(arguments.json).write_text(json.dumps(text, indent=1))
-    if arguments.board:
-        from slipstick import conformance
-        kept = Path(f"{arguments.board}.json")
-        page, result = conformance.board(rows, json.loads(kept.read_text()) if kept.exists() else None)
-        kept.write_text(json.dumps(result, indent=1))
-        Path(f"{arguments.board}.md").write_text(page)
 
 
 if __name__ == "__main__":

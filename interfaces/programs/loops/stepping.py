@@ -4,16 +4,21 @@ An engine is one sphere at rest on the ground, of a given mass in kg, that can m
 normal. It has `step_size`, and step(normal_load, moment, force), which takes one step under these loads and returns twist and displacement
 so far."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 STEP = 1e-6  # s, of granular programs
+SERVO_STEPS = 40
 SETTLED = 3000  # steps until it rests
 LIGHT, HEAVY = 1.0, 1000.0  # kg; a heavy one keeps its rate against friction
 
 
 def stepped(engine, sphere, *arguments):
-    """The responses of a simulator, with a new engine for each run: of motions to loads; if `moves`, of loads to motions."""
-    def respond(path, moves):
+    """The responses of a simulator, with a new engine for each run: motions under loads. Where the path asks for loads, the motions are
+    imposed."""
+    def respond(path):
+        moves = not {"twist", "displacement"} & set(path.responses)
         mass = HEAVY if moves else LIGHT
         return _respond(engine(sphere, mass, *arguments), path, np.array([0.4 * mass * sphere.radius**2, mass]) if moves else None)
     return respond
@@ -49,11 +54,23 @@ def _moved(engine, loads, rates, at, inertias):
         yield pushed - inertias * (now - before) / engine.step_size
 
 
-def turned(sphere, path):
-    """For programs that impose the twist and hold two spheres at a distance: contact radius, rotation of each row in rad, and steps a row.
-    Raises LookupError where the path needs more."""
-    if np.ptp(path.normal_load) or path.displacement.any() or path.force.any():
-        raise LookupError("its adapter imposes the twist only, at one distance")
-    steps = max(1, round(10 * float(path.time[1] - path.time[0]) / path.shortest))
-    radius = sphere.contact_radius * (float(path.normal_load[0]) / sphere.load)**(1 / 3)
-    return radius, np.diff(path.twist).tolist(), steps
+def at_rest(sphere, path):
+    """For granular programs, which move two spheres step by step without inertia. Loads are imposed by a servo: each step moves the spheres
+    by the missing loads over stiffnesses. holds: loads are imposed. given: moment and force, or increments of twist and
+    displacement, a row for each row of the path but the first. steps: for each row."""
+    holds = not {"moment", "force"} & set(path.responses)
+    given = np.column_stack([path.moment, path.force])[1:] if holds else np.diff(np.column_stack([path.twist, path.displacement]), axis=0)
+    steps = SERVO_STEPS if holds else max(1, round(10 * float(path.time[1] - path.time[0]) / path.shortest))
+    return SimpleNamespace(holds=holds, given=given, steps=steps, load=path.normal_load[1:], radius=sphere.contact_radius * np.cbrt(
+        path.normal_load[1:] / sphere.load))
+
+
+def answered(sphere, path, found):
+    """The response from rows of moment, force, twist and displacement. missed: the largest error of imposed loads over their limits."""
+    names = "moment", "force", "twist", "displacement"
+    whole = dict(zip(names, np.vstack([np.zeros(4), found]).T))
+    if {"moment", "force"} & set(path.responses):
+        return {name: whole[name] for name in names[:2]}
+    missed = [np.abs(whole[name] - getattr(path, name)).max() / limit
+              for name, limit in zip(names, (sphere.limit, sphere.friction * sphere.load))]
+    return {**{name: whole[name] for name in names[2:]}, "missed": float(max(missed))}

@@ -1,4 +1,5 @@
-"""Yade, `yade`: two equal spheres of twice the radius are one of this radius on a half-space. The rotation is imposed. The law
+"""Yade, `yade`: two equal spheres of twice the radius are one of this radius on a half-space. Motions are imposed, and loads by a
+servo. The law
 of CohFrictMat has a twisting moment, a spring with a cap; Hertz-Mindlin's law has none."""
 
 import json
@@ -7,8 +8,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-import numpy as np
-from stepping import STEP, turned
+from stepping import STEP, answered, at_rest
 
 
 def runs(sphere):
@@ -25,15 +25,15 @@ def runs(sphere):
 
 
 def twisted(sphere, twisting, incremental=False):
-    def respond(path, _):
-        contact, turns, steps = turned(sphere, path)
-        radius, load = 2 * sphere.radius, sphere.load * (contact / sphere.contact_radius)**3
+    def respond(path):
+        rest, radius = at_rest(sphere, path), 2 * sphere.radius
         scene = {"twisting": twisting, "young": sphere.young, "poisson": sphere.poisson, "friction": sphere.friction, "radius": radius,
-                 "distance": 2 * radius - load / (sphere.young * radius), "turns": turns, "steps": steps, "step": STEP,
+                 "distances": (2 * radius - rest.load / (sphere.young * radius)).tolist(), "given": rest.given.tolist(),
+                 "holds": rest.holds, "steps": rest.steps, "step": STEP,
                  "incremental": incremental}
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "scene.json").write_text(json.dumps(scene))
             script = Path(__file__).with_name("twist_in_yade.py").resolve()
             subprocess.run(["yade", "-n", "-x", script], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            return {"moment": np.array([0.0, *json.loads((Path(folder) / "out.json").read_text())])}
+            return answered(sphere, path, json.loads((Path(folder) / "out.json").read_text()))
     return respond

@@ -35,11 +35,18 @@ def creeps(loop, exact):
     assert loop["largest_rotation"] > 3 * exact, loop
 
 
-def has_verdicts(board, friction, **wanted):
-    cells = board["programs"][friction]["cases"]
+def has_verdicts(rows, friction, **wanted):
+    """friction: which of the simulator's."""
+    variant = list(dict.fromkeys(row["variant"] for row in rows))[friction]
     names = [key.replace("_0_", "_0.").replace("_", "-") for key in wanted]
-    found = {name: (cells[name]["verdict"], cells[name].get("cause")) for name in names}
-    assert list(found.values()) == list(wanted.values()), found
+    found = {row["on"]: (row["verdict"], row["cause"]) for row in rows if row["variant"] == variant}
+    assert [found[name] for name in names] == list(wanted.values()), found
+
+
+def imposes_loads(rows):
+    """Springs with caps do not creep below the limit, and the servo's loads are right to 1e-9 of the limit."""
+    assert {row["verdict"] for row in rows if row["on"].startswith("hold")} == {"green"}, rows
+    assert max(row["missed"] for row in rows) < 1e-9, rows
 
 
 def main(program, scenes, name, python):
@@ -47,19 +54,20 @@ def main(program, scenes, name, python):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "loops.json"
         words = [python if os.access(python, os.X_OK) else sys.executable, "-B", LOOPS, program, scene, "--json", file, "--only", name]
-        if has_board := name in ("LAMMPS", "MuJoCo", "PyBullet"):
-            words += ["--board", Path(folder) / "board"]
-        subprocess.run(words, check=True)
-        found, board = (json.loads(each.read_text()) if has_board or each is file else None for each in (file, Path(folder) / "board.json"))
-    loops, law = found["loops"], found["law"]
+        subprocess.run([*words, *(["--cases"] if name in ("LAMMPS", "MuJoCo", "PyBullet") else [])], check=True)
+        found = json.loads(file.read_text())
+    loops, law, rows = found["loops"], found["law"], found["rows"]
     if not loops:
         return 77  # and loops.py said so
     if name == "LAMMPS":
         is_spring_and_slider(loops[1], law["lammps"])
-        has_verdicts(board, 0, load_powers=("green", None), rates=("green", None))  # Marshall's spring and cap grow with the contact
-        has_verdicts(board, 1, first_loading=("red", "spring_and_cap"), load_powers=("red", "constant_radius"), rates=("green", None))
+        imposes_loads(rows)
+        has_verdicts(rows, 0, load_powers=("green", None), rates=("green", None))  # Marshall's spring and cap grow with the contact
+        has_verdicts(rows, 1, limit_surface=("red", "box"), normal_load=("red", "normal_load_ignored"))
+        has_verdicts(rows, 1, first_loading=("red", "spring_and_cap"), load_powers=("red", "constant_radius"), rates=("green", None))
     elif name == "PyBullet":  # rigid and without creep about the normal; force and moment know nothing of each other
-        has_verdicts(board, 1, first_loading=("red", "rigid"), hold_moment_0_9=("green", None), limit_surface=("red", "box"),
+        has_verdicts(rows, 0, hold_moment_0_9=("red", "free"), limit_surface=("red", "moment_off"))
+        has_verdicts(rows, 1, first_loading=("red", "rigid"), hold_moment_0_9=("green", None), limit_surface=("red", "box"),
                      load_powers=("red", "constant_radius"))
     elif name == "Yade":
         is_a_cap_without_memory(loops[1])
@@ -67,8 +75,8 @@ def main(program, scenes, name, python):
     else:
         for loop in loops:
             creeps(loop, law["mujoco"]["lost_presliding"])
-        if board:
-            has_verdicts(board, 1, hold_moment_0_5=("red", "creeps"), hold_force_0_5=("red", "creeps"), rates=("red", "creeps"))
+        if rows:
+            has_verdicts(rows, 1, hold_moment_0_5=("red", "creeps"), hold_force_0_5=("red", "creeps"), rates=("red", "creeps"))
     return 0
 
 

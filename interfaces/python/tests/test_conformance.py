@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import drawn_loops
@@ -201,7 +202,7 @@ class Wrong(unittest.TestCase):
     def test_powers(self):
         case = named("load-powers")
         ratio = case.normal_load / SPHERE.normal_load
-        for power, cause in ((0, "normal_load_ignored"), (1, "constant_radius"), (5 / 4, "hydroelastic_radius"), (3 / 2, "cone")):
+        for power, cause in ((0, "normal_load_ignored"), (1, "constant_radius"), (5 / 4, "hydroelastic_radius"), (3 / 2, "wrong_power")):
             limit = self.draw.uniform(0.5, 2) * ratio**(power - 4 / 3)
             self.turns("red", case, {"moment": case.moment * limit}, cause)
         for power, cause in ((0, "constant_stiffness"), (1 / 3, "tangential_stiffness"), (2 / 3, "stiffness_like_a2")):
@@ -249,7 +250,33 @@ class Wrong(unittest.TestCase):
         for _ in range(DRAWS):
             high = self.draw.uniform(1.11, 2)
             self.turns("red", case, {"force": case.force, "moment": high * case.moment}, "limits")
-        self.turns("red", case, {"force": case.force, "moment": 0 * case.moment}, "no_moment")
+        for weak, cause in ((0.0, "moment_off"), (0.04, "moment_off"), (0.3, "limits")):
+            self.turns("red", case, {"force": case.force, "moment": weak * case.moment}, cause)
+
+    def test_free_bodies_neither_creep_nor_slide(self):
+        for case in cases():
+            motion, load = (case.responses[-1], "force" if case.responses[-1] == "displacement" else "moment")
+            if motion not in ("twist", "displacement"):
+                continue
+            inertia = 10**self.draw.uniform(-9, -5) * np.abs(getattr(case, load)).max() / np.abs(getattr(case, motion)).max()
+
+            def stepped(rows, bound, load=load, inertia=inertia):  # in small steps, as simulators take them
+                ends = np.rint(1e4 * case.time[rows]).astype(int)
+                loads = np.interp(1e-4 * np.arange(ends[-1] + 1), case.time[rows], getattr(case, load)[rows])
+                speed = np.cumsum(1e-4 * loads / inertia)
+                return np.cumsum(1e-4 * np.clip(speed, -bound * np.abs(speed).max(), bound * np.abs(speed).max()))[ends]
+            for bound in (1.0, 0.2):  # some programs bound the rate
+                self.turns("red", case, {motion: by_run(case, partial(stepped, bound=bound))}, "free")
+            size = np.abs(getattr(case, motion)).max()
+            for wrong in (1e3 * size * case.time**2, 1e3 * size * np.maximum(0, case.time - 0.8)**2):  # slides in other ways
+                self.assertNotEqual(judge(case, {motion: getattr(case, motion) + wrong}).cause, "free")
+
+    def test_weak_moments_have_no_power(self):
+        case = named("load-powers")
+        for factor in (0.0, 1e-3, 0.04):
+            verdict = judge(case, {"moment": factor * case.moment * (case.normal_load / SPHERE.normal_load)**(1 / 6)})
+            self.assertEqual((verdict.verdict, verdict.cause), ("red", "moment_off"))
+            self.assertIn(f"the moment is {factor:.2g} times", verdict.why)
 
     def test_normal_load(self):
         case = named("normal-load")
@@ -295,7 +322,8 @@ class Files(unittest.TestCase):
         cells = result["programs"][0]["cases"]
         self.assertEqual({cells[name]["verdict"] for name in cells if name != "memory"}, {"green"})
         later, changed = conformance.board([row(1.2)], json.loads(json.dumps(result)))
-        self.assertIn("| first-loading | P 1 | own | red (before: green) | deviation 20 % | factor |", later)
+        # Stiffness and deviation are equal but for rounding.
+        self.assertRegex(later, r"\| first-loading \| P 1 \| own \| red \(before: green\) \| (stiffness|deviation) 20 % \| factor \|")
         self.assertEqual(changed["programs"][0]["cases"]["first-loading"]["cause"], "factor")
 
     @unittest.skipUnless(importlib.util.find_spec("pytest"), "pytest is not installed")
