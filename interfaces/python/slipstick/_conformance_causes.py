@@ -83,10 +83,10 @@ def _free(case: Any, data: Mapping[str, Array]) -> Optional[str]:
 
 
 def _falls_freely(time: Array, load: Array, motion: Array) -> bool:
-    """Whether the motion is the load over one inertia, integrated twice, up to half of the largest rate: some programs bound it."""
+    """Whether the motion is the load over one inertia, integrated twice, up to the largest rate: some programs bound it."""
     step = np.diff(time)
     rate = np.abs(np.diff(motion) / step)
-    rows = int(np.argmax(rate > 0.5 * rate.max()))
+    rows = int(np.argmax(rate > 0.98 * rate.max()))
     speed = np.append(0.0, np.cumsum(0.5 * step * (load[1:] + load[:-1])))
     alone = np.append(0.0, np.cumsum(step * speed[:-1] + step**2 * (2 * load[:-1] + load[1:]) / 6))[:rows]
     known = motion[:rows]

@@ -268,7 +268,8 @@ class Wrong(unittest.TestCase):
             for bound in (1.0, 0.2):  # some programs bound the rate
                 self.turns("red", case, {motion: by_run(case, partial(stepped, bound=bound))}, "free")
             size = np.abs(getattr(case, motion)).max()
-            for wrong in (1e3 * size * case.time**2, 1e3 * size * np.maximum(0, case.time - 0.8)**2):  # slides in other ways
+            self.assertNotEqual(judge(case, {motion: drag(case, motion, load)}).cause, "free", case.id)
+            for wrong in (1e3 * size * case.time, 1e3 * size * np.maximum(0, case.time - 0.8)**2):  # creeps, or slides late
                 self.assertNotEqual(judge(case, {motion: getattr(case, motion) + wrong}).cause, "free")
 
     def test_weak_moments_have_no_power(self):
@@ -291,6 +292,19 @@ class Wrong(unittest.TestCase):
         self.turns("red", case, {"twist": 0 * case.twist}, "rigid")
         exact = Elements(SPHERE).follow(np.full(len(case.time), SPHERE.normal_load), case.moment, True)
         self.turns("red", case, {"twist": exact}, "normal_load_ignored")
+
+
+def drag(case, motion, load):
+    """A body with an inertia and a viscous drag that bounds its rate after half a second, in steps of 1e-3 s."""
+    def one(rows):
+        ends, rate, at, found = np.rint(1e3 * case.time[rows]).astype(int), 0.0, 0.0, [0.0]
+        for pushed in np.interp(1e-3 * np.arange(1, ends[-1] + 1), case.time[rows], getattr(case, load)[rows]):
+            rate += 1e-3 * (pushed - rate / 0.5)
+            at += 1e-3 * rate
+            found.append(at)
+        return np.array(found)[ends]
+    response = by_run(case, one)
+    return response * 1e3 * np.abs(getattr(case, motion)).max() / np.abs(response).max()
 
 
 class Files(unittest.TestCase):
