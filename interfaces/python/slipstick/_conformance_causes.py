@@ -69,6 +69,7 @@ def deviation_cause(case: Any, data: Mapping[str, Array], numbers: list[float]) 
         return _law_cause(case, data)
 
 
+_FIRST = 32  # rows; before them the steps of a simulator show
 _LOAD_OF = {"twist": "moment", "displacement": "force"}
 
 
@@ -88,9 +89,13 @@ def _falls_freely(time: Array, load: Array, motion: Array) -> bool:
     rate = np.abs(np.diff(motion) / step)
     rows = int(np.argmax(rate > 0.98 * rate.max()))
     speed = np.append(0.0, np.cumsum(0.5 * step * (load[1:] + load[:-1])))
-    alone = np.append(0.0, np.cumsum(step * speed[:-1] + step**2 * (2 * load[:-1] + load[1:]) / 6))[:rows]
-    known = motion[:rows]
-    return rows > 10 and bool(np.abs(known - alone * (alone @ known) / (alone @ alone)).max() <= _NEAR * np.abs(known).max())
+    alone = np.append(0.0, np.cumsum(step * speed[:-1] + step**2 * (2 * load[:-1] + load[1:]) / 6))
+    known, alone = motion[:rows], alone[:rows]
+    if rows < _FIRST + 2:
+        return False
+    alone = alone * (alone @ known) / (alone @ alone)
+    off = np.abs(known - alone)
+    return bool(off.max() <= _NEAR * np.abs(known).max() and (off[_FIRST:] <= 0.1 * np.abs(alone[_FIRST:])).all())
 
 
 def _size_cause(factor: float, name: str) -> Cause:
