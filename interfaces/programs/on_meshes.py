@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+LONGEST = 900  # s, of one program on one mesh
 
 
 def found(only=None):
@@ -29,7 +30,7 @@ def said_version(folder, program):
 def solved(folder, program, scene, faces, output):
     """The numbers of the program on a mesh with this number of faces across the contact radius."""
     values = {"scene": Path(scene).resolve(), "folder": output.resolve(), "faces": faces}
-    subprocess.run([word.format(**values) for word in program["command"]], cwd=folder, check=True)
+    subprocess.run([word.format(**values) for word in program["command"]], cwd=folder, check=True, timeout=LONGEST)
     return json.loads((output / "numbers.json").read_text())
 
 
@@ -56,7 +57,13 @@ def main():
             continue
         for faces in program["faces"]:
             output = arguments.output / f"{program['name']}-{faces}"
-            numbers = solved(folder, program, arguments.scene, faces, output)
+            try:
+                numbers = solved(folder, program, arguments.scene, faces, output)
+            except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as failed:
+                print(f"{version}, {faces} faces across the contact radius: no answer: {failed}")
+                board += [{"program": version, "faces": faces, "moment_ratio": ratio, "twist": None, "cpu_seconds": None, "check": {
+                    "verdict": "not judged", "why": f"no answer within {LONGEST} s", "judged": []}} for ratio in (0.5, 0.9)]
+                continue
             for ratio, twist in numbers["twist_angle"].items():
                 result = judged(arguments.slipstick, arguments.scene, output / f"{ratio}.vtu", ratio, twist, numbers["check"])
                 board.append({"program": version, "faces": faces, "moment_ratio": float(ratio), "twist": twist,
