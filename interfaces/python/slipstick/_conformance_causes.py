@@ -27,7 +27,7 @@ _COMMON = ("free", "moment_off", "unknown", "not_a_number")
 _WEAK = 0.1  # a load this small over the exact one has no shape or power that is worth a name
 CAUSES = {
     **{kind: (*_LAWS, "turns_too_far", *_COMMON) for kind in ("first-loading", "loops", "memory")},
-    "load-powers": (*dict.fromkeys(name for powers in _POWERS.values() for name, _ in powers.values()), "rigid", "wrong_power", *_COMMON),
+    "load-powers": (*dict.fromkeys(name for powers in _POWERS.values() for name, _ in powers.values()), "wrong_power", *_COMMON),
     "hold": ("creeps", "settles", "slides", *_COMMON),
     "limit-surface": ("box", "ellipsoid", "diamond", "limits", "force_off", *_COMMON),
     "normal-load": ("normal_load_ignored", "no_memory_of_load", "creeps", "rigid", *_COMMON),
@@ -115,7 +115,7 @@ def _law_cause(case: Any, data: Mapping[str, Array]) -> Cause:
     explain(judgement, path, contact, _LOOP_TOLERANCE)
     factor = np.abs(data["twist"]).max() / np.abs(case.twist).max()
     if not judgement.law and factor > 10:
-        return "turns_too_far", f"the contact turns {factor:.2g} times as far as the exact one, by no known law"
+        return "turns_too_far", f"the contact turns {factor:.2g} times as far as the exact one"
     return judgement.law or "unknown", judgement.why
 
 
@@ -124,7 +124,7 @@ def _power_cause(numbers: list[float]) -> Cause:
     off = {"limit": (limit, limit + 4 / 3), "stiffness": (stiffness, stiffness + 1)}
     for name, (error, power) in off.items():  # a wrong limit first: it needs no presliding
         if math.isnan(error):
-            return "rigid", f"the {name} is not a positive number under each load"
+            return "unknown", f"the {name} is not a positive number under each load"
         if abs(error) > 0.01:
             near = min(_POWERS[name], key=lambda known: abs(known - power))
             if abs(near - power) <= _NEAR:

@@ -278,6 +278,7 @@ class Wrong(unittest.TestCase):
             verdict = judge(case, {"moment": factor * case.moment * (case.normal_load / SPHERE.normal_load)**(1 / 6)})
             self.assertEqual((verdict.verdict, verdict.cause), ("red", "moment_off"))
             self.assertIn(f"the moment is {factor:.2g} times", verdict.why)
+        self.turns("red", case, {"moment": -case.moment}, "unknown")  # drives; it is not rigid
 
     def test_normal_load(self):
         case = named("normal-load")
