@@ -165,7 +165,18 @@ solver::TangentialProblem own_problem(const GivenContact& contact, const solver:
   } else {
     problem.force = contact.force();
   }
+  leave_out_translations(problem, contact.grid, contact.traction);
   return problem;
+}
+
+void leave_out_translations(solver::TangentialProblem& problem, const Grid& grid, const ArrayXd& traction) {
+  constexpr double kNoForce = 1e-6;  // of the tractions' sizes
+  if (!problem.force) return;
+  const auto [force1, force2] = *problem.force;
+  if (std::hypot(force1, force2) <= kNoForce * solver::norms(traction).sum() &&
+      solver::is_half_turn_symmetric(grid, problem.friction_bound) &&
+      solver::turns_into_itself(problem.initial_displacement))
+    problem.force.reset();
 }
 
 double solved_multiple(double factor) {
@@ -174,16 +185,25 @@ double solved_multiple(double factor) {
 }
 
 void scale_loads(solver::TangentialProblem& problem, double factor) {
+  if (problem.limit_factor) *problem.limit_factor /= factor;
   if (problem.moment) *problem.moment *= factor;
   if (!problem.force) return;
   for (double& force : *problem.force) force *= factor;
 }
 
 solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid& grid,
-                                         const solver::TangentialProblem& problem) {
-  solver::TangentialSolution solution = solve_by_coulomb_method(contact.elasticity, grid, problem);
+                                         solver::TangentialProblem problem) {
+  const ArrayXd& bound = problem.friction_bound;
+  const bool mirrored = !problem.force && !problem.displacement && problem.initial_displacement.size() == 0;
+  const solver::Reduction part =
+      mirrored ? solver::Reduction(grid, bound, bound) : solver::Reduction(grid, bound);
+  solver::Elasticity elasticity = contact.elasticity;
+  elasticity.diagonal = part.diagonal();
+  solver::TangentialSolution solution =
+      solve_by_coulomb_method(elasticity, part.grid(), reduced(problem, part));
   const bool usable = solution.status == solver::Status::converged || solution.change <= kIterationGap;
   if (!usable) throw std::runtime_error("the right answer to judge by was not found: " + solution.message);
+  expand(solution, part);
   return solution;
 }
 
@@ -191,8 +211,9 @@ RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& l
   const Grid& grid = contact.grid;
   solver::TangentialProblem problem = own_problem(contact, load);
   const double factor = solver::limit_of(problem, grid).factor;
+  problem.limit_factor = factor;
   scale_loads(problem, solved_multiple(factor));
-  const solver::TangentialSolution solution = solve_problem(contact, grid, problem);
+  const solver::TangentialSolution solution = solve_problem(contact, grid, std::move(problem));
   return {.traction = solution.traction,
           .twist = solution.twist,
           .displacement = {solution.displacement[0] + solution.twist * contact.centre[1],

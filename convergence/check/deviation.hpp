@@ -64,9 +64,15 @@ double solved_multiple(double factor);
 /// Throws std::runtime_error where the solve gets nowhere near kIterationGap.
 RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load);
 
-/// Solves a problem on any grid for the contact's bodies. Throws as find_right_answer().
+/// Solves a problem on any grid for the contact's bodies, on one quadrant where the bound and the loads have
+/// two mirror axes. Throws as find_right_answer().
 solver::TangentialSolution solve_problem(const GivenContact& contact, const solver::Grid& grid,
-                                         const solver::TangentialProblem& problem);
+                                         solver::TangentialProblem problem);
+
+/// Leaves the force out, and the translations with it, where it is nothing but the rounding of these
+/// tractions on a contact that half a turn brings onto itself.
+void leave_out_translations(solver::TangentialProblem& problem, const solver::Grid& grid,
+                            const Eigen::ArrayXd& traction);
 
 /// Multiplies the loads that a problem imposes.
 void scale_loads(solver::TangentialProblem& problem, double factor);

@@ -93,10 +93,12 @@ solver::TangentialSolution solve_finer(const GivenContact& contact, const solver
   const double own = solver::limit_of(problem, contact.grid).factor;
   problem.friction_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
   problem.initial_displacement = pressure_displacement(contact, fine, pressure);
+  leave_out_translations(problem, fine, contact.traction);
   scale_loads(problem, kChildrenOfCell);
   const double limit = solver::limit_of(problem, fine).factor;
+  problem.limit_factor = limit;
   if (std::isfinite(limit)) scale_loads(problem, solved_multiple(own) * limit / own);
-  return solve_problem(contact, fine, problem);
+  return solve_problem(contact, fine, std::move(problem));
 }
 
 /// Loads that a field carries, about the grid's centre; areas are in the grid's units.

@@ -42,6 +42,9 @@ constexpr double kStepsAway = 10.0;
 constexpr double kOffCentre = 1e-2;
 /// up to this part of the cell, within which positions still distinguish cells.
 constexpr double kDistinguishesCells = 0.25;
+/// Part of a cell that the sums which fit a grid leave: squares are squares, and an axis is a mirror, without
+/// it.
+constexpr double kGridRounding = 1e-9;
 
 /// Equally spaced places along one axis.
 struct Axis {
@@ -50,6 +53,7 @@ struct Axis {
   Index count = 0;
 
   double place(double x) const { return (x - first) / spacing; }
+  bool is_rounding(double length) const { return std::abs(length) <= kGridRounding * spacing; }
   double centre() const { return first + 0.5 * static_cast<double>(count - 1) * spacing; }
 
   /// How far values are off the nearest places, and how far they may be, in steps.
@@ -218,8 +222,9 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
   const Axis axis1 = find_axis(file, x1);
   const Axis axis2 = find_axis(file, x2);
   require_judgeable(file, x1, axis1, x2, axis2);
-  FieldGrid found{
-      {axis1.count, axis2.count, axis1.spacing, axis2.spacing}, {axis1.centre(), axis2.centre()}, {}};
+  const double spacing2 = axis1.is_rounding(axis2.spacing - axis1.spacing) ? axis1.spacing : axis2.spacing;
+  const auto centre = [](const Axis& axis) { return axis.is_rounding(axis.centre()) ? 0.0 : axis.centre(); };
+  FieldGrid found{{axis1.count, axis2.count, axis1.spacing, spacing2}, {centre(axis1), centre(axis2)}, {}};
   std::vector<Index> row_of(static_cast<std::size_t>(found.grid.cells()), -1);
   for (Index row = 0; row < x1.values.size(); ++row) {
     const Index cell =

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
@@ -59,6 +60,31 @@ void require_valid(const TangentialProblem& problem, const Grid& grid) {
         "carries",
         factor));
   }
+}
+
+TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
+  const double images = part.quadrant() ? 4.0 : 1.0;
+  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
+                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
+                            .moment = problem.moment,
+                            .twist = problem.twist,
+                            .force = problem.force,
+                            .displacement = problem.displacement,
+                            .start = part.restricted(std::move(problem.start)),
+                            .energy_before = problem.energy_before / images,
+                            .limit_factor = problem.limit_factor};
+  if (on_part.moment) *on_part.moment /= images;
+  return on_part;
+}
+
+void expand(TangentialSolution& solution, const Reduction& part) {
+  if (!part.trimmed() && !part.quadrant()) return;
+  ArrayXd& u = solution.elastic_displacement;
+  share_rows(part.grid(), u);
+  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
+    *field = part.expanded(std::move(*field), torsion_symmetry());
+  }
+  solution.stick = part.expanded(solution.stick, normal_symmetry());
 }
 
 }  // namespace slipstick::solver

@@ -9,6 +9,7 @@
 #include "solver/contact/normal_contact.hpp"
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid.hpp"
+#include "solver/grid/reduction.hpp"
 #include "solver/newton/safeguards.hpp"
 
 namespace slipstick::solver {
@@ -57,5 +58,12 @@ LimitLoad limit_of(const TangentialProblem& problem, const Grid& grid);
 /// Throws std::invalid_argument if neither or both of moment and twist are given, or both of force and
 /// displacement, if a bound is negative or NaN, or if the loads are not below what the contact can carry.
 void require_valid(const TangentialProblem& problem, const Grid& grid);
+
+/// The problem on a part of the grid, where a quadrant carries a quarter of the moment; without a guess.
+/// Moves what only a solve needs out of the whole one.
+TangentialProblem reduced(TangentialProblem& problem, const Reduction& part);
+
+/// Its solution on the whole grid.
+void expand(TangentialSolution& solution, const Reduction& part);
 
 }  // namespace slipstick::solver

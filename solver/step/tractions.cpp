@@ -143,33 +143,6 @@ double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const
   return before.energy * std::min(1.0, load * load / size);
 }
 
-/// The problem on a part of the grid, where a quadrant carries a quarter of the moment. Moves what only a
-/// solve needs out of the whole one.
-TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
-  const double images = part.quadrant() ? 4.0 : 1.0;
-  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
-                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
-                            .moment = problem.moment,
-                            .twist = problem.twist,
-                            .force = problem.force,
-                            .displacement = problem.displacement,
-                            .start = part.restricted(std::move(problem.start)),
-                            .energy_before = problem.energy_before / images,
-                            .limit_factor = problem.limit_factor};
-  if (on_part.moment) *on_part.moment /= images;
-  return on_part;
-}
-
-void expand(TangentialSolution& solution, const Reduction& part) {
-  if (!part.trimmed() && !part.quadrant()) return;
-  ArrayXd& u = solution.elastic_displacement;
-  share_rows(part.grid(), u);
-  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
-    *field = part.expanded(std::move(*field), torsion_symmetry());
-  }
-  solution.stick = part.expanded(solution.stick, normal_symmetry());
-}
-
 /// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
                             TangentialProblem problem, const Progress& progress, double gap) {
