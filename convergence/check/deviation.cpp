@@ -147,10 +147,11 @@ KnownMotion known_motion(const GivenContact& contact, const solver::Step& load, 
 solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load) {
   solver::TangentialProblem problem{
       .friction_bound = contact.friction_bound,
-      .initial_displacement = contact.displacement - contact.elastic_displacement,
+      .initial_displacement = contact.pressure_coupling
+                                  ? ArrayXd(contact.displacement - contact.elastic_displacement)
+                                  : ArrayXd(),
       .moment = {},
       .twist = solver::value_if<solver::Twist>(load.torsion)};
-  if (!contact.pressure_coupling) problem.initial_displacement = {};
   if (!problem.twist) {
     problem.moment = (contact.traction * solver::rotation_field(contact.grid)).sum();
   }
