@@ -204,7 +204,7 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid
       solve_by_coulomb_method(elasticity, part.grid(), reduced(problem, part));
   const bool usable = solution.status == solver::Status::converged || solution.change <= kIterationGap;
   if (!usable) throw std::runtime_error("the right answer to judge by was not found: " + solution.message);
-  expand(solution, part);
+  solution.traction = part.expanded(std::move(solution.traction), solver::torsion_symmetry());
   return solution;
 }
 

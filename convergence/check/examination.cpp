@@ -235,13 +235,16 @@ MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene,
   const Grid fine = finer(grid);
   const Grid fine_whole = wide ? finer(wide->grid) : fine;
   MeshMeasurement measurement(contact, load, regions, known.twist);
-  const auto found = fine_pressure(contact, scene, model, known.pressed, fine_whole, wide.has_value());
-  ArrayXd pressure = on_fine_cells(contact.grid, contact.pressure);
-  if (found) {
-    const ArrayXd here = resized(fine_whole, fine, *found);
-    if (here.sum() >= (1.0 - kMissedLoad) * found->sum()) pressure = here;
+  auto found = fine_pressure(contact, scene, model, known.pressed, fine_whole, wide.has_value());
+  const bool is_known = found.has_value();
+  ArrayXd pressure;
+  if (is_known) {
+    if (wide) measurement.add_pressures(*wide, *found);
+    const double sum = found->sum();
+    pressure = resized(fine_whole, fine, *std::exchange(found, std::nullopt));
+    if (!(pressure.sum() >= (1.0 - kMissedLoad) * sum)) pressure.resize(0);
   }
-  if (found && wide) measurement.add_pressures(*wide, *found);
+  if (pressure.size() == 0) pressure = on_fine_cells(contact.grid, contact.pressure);
   const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
   const ArrayXd fine_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
   MeshErrors& errors = measurement.errors;
@@ -250,7 +253,7 @@ MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene,
   measurement.add_field(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
   measurement.add_field(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
                         solution.twist);
-  if (wide && !found) {
+  if (wide && !is_known) {
     // A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
     errors.deviation.pressure = errors.deviation.tractions;
     errors.pressures = errors.tractions / contact.mean_friction();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/contact/smoothed_friction.hpp"
+#include "solver/contact/tangential_problem.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -254,7 +255,10 @@ LimitLoad find_limit(const Grid& grid, const ArrayXd& friction_bound, const Impo
 }
 
 double free_moment_limit(const Grid& grid, const ArrayXd& friction_bound) {
-  return find_limit(grid, friction_bound, {0.0, 0.0, 1.0}).factor;
+  // The sum is convex in c: half a turn that leaves the bounds leaves a least one at the origin.
+  const bool at_origin = friction_bound.isFinite().all() && is_half_turn_symmetric(grid, friction_bound);
+  return at_origin ? moment_limit(grid, friction_bound)
+                   : find_limit(grid, friction_bound, {0.0, 0.0, 1.0}).factor;
 }
 
 }  // namespace slipstick::solver

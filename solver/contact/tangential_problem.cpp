@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
@@ -75,16 +74,6 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
                             .limit_factor = problem.limit_factor};
   if (on_part.moment) *on_part.moment /= images;
   return on_part;
-}
-
-void expand(TangentialSolution& solution, const Reduction& part) {
-  if (!part.trimmed() && !part.quadrant()) return;
-  ArrayXd& u = solution.elastic_displacement;
-  share_rows(part.grid(), u);
-  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
-    *field = part.expanded(std::move(*field), torsion_symmetry());
-  }
-  solution.stick = part.expanded(solution.stick, normal_symmetry());
 }
 
 }  // namespace slipstick::solver

@@ -63,7 +63,4 @@ void require_valid(const TangentialProblem& problem, const Grid& grid);
 /// Moves what only a solve needs out of the whole one.
 TangentialProblem reduced(TangentialProblem& problem, const Reduction& part);
 
-/// Its solution on the whole grid.
-void expand(TangentialSolution& solution, const Reduction& part);
-
 }  // namespace slipstick::solver

@@ -40,7 +40,9 @@ class InputFile {
 
   /// Reads to the end: a file may grow meanwhile, and files of the system have no size.
   std::string read() const {
+    struct stat status {};
     std::string text;
+    if (fstat(descriptor_, &status) == 0) text.reserve(static_cast<std::size_t>(status.st_size));
     std::array<char, 1 << 16> buffer;
     for (;;) {
       const ssize_t size = ::read(descriptor_, buffer.data(), buffer.size());

@@ -143,6 +143,16 @@ double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const
   return before.energy * std::min(1.0, load * load / size);
 }
 
+void expand(TangentialSolution& solution, const Reduction& part) {
+  if (!part.trimmed() && !part.quadrant()) return;
+  ArrayXd& u = solution.elastic_displacement;
+  share_rows(part.grid(), u);
+  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
+    *field = part.expanded(std::move(*field), torsion_symmetry());
+  }
+  solution.stick = part.expanded(solution.stick, normal_symmetry());
+}
+
 /// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
                             TangentialProblem problem, const Progress& progress, double gap) {
