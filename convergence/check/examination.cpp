@@ -29,6 +29,9 @@ constexpr double kChildrenOfCell = static_cast<double>(kChildren * kChildren);
 constexpr double kMissedLoad = 1e-2;
 /// Standard deviation over |q| of the largest noise that a right field is allowed.
 constexpr double kLargestNoise = 3e-3;
+/// Part of the largest bound by which a random error moves no number that is judged: files with all digits of
+/// a double have less.
+constexpr double kUnseen = 1e-13;
 /// Upper quartile of a normal distribution, in standard deviations.
 constexpr double kQuartile = 0.6745;
 
@@ -293,7 +296,7 @@ ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
 /// larger one of a draw and its opposite.
 Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const Regions& regions,
                     const solver::Step& load, const ArrayXd& size) {
-  if (!(size.maxCoeff() > 0.0)) return {};
+  if (!(size.maxCoeff() > kUnseen * contact.friction_bound.maxCoeff())) return {};
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   ArrayXd error(right.traction.size());

@@ -2,7 +2,12 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
@@ -92,6 +97,22 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
   return columns;
 }
 
+/// A double with 17 digits, which are read as the same double.
+struct Digits {
+  std::uint64_t bits = 0;
+  std::array<char, 32> text{'0'};
+  std::size_t size = 1;
+
+  Digits() = default;
+  explicit Digits(std::uint64_t of) : bits(of) {
+    char* const first = text.data();
+    const auto end =
+        std::to_chars(first, first + text.size(), std::bit_cast<double>(of), std::chars_format::general, 17);
+    size = static_cast<std::size_t>(end.ptr - first);
+  }
+};
+
+/// Numbers that a cell repeats, from the cell before or from another column, are put into digits once.
 void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns,
                const ArrayXd& keep) {
   std::vector<std::string> names;
@@ -99,17 +120,28 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   for (const FieldColumn& column : columns) names.push_back(column.name);
   fmt::print(file, "{}\n", fmt::join(names, ","));
   Eigen::ArrayXXd row(grid.n2, static_cast<Index>(columns.size()));
+  std::vector<Digits> cell_text(columns.size());  // of a cell, and until then of the one before
+  std::string text;
   for (Index first = 0; first < grid.cells(); first += grid.n2) {
     const Index last = first + grid.n2;
     for (std::size_t c = 0; c < columns.size(); ++c)
       columns[c].values(first, last, row.col(static_cast<Index>(c)).data());
+    text.clear();
     for (Index cell = first; cell < last; ++cell) {
       if (keep[cell] == 0.0) continue;
-      const char* separator = "";
-      for (const double value : row.row(cell - first))
-        fmt::print(file, "{}{:.17g}", std::exchange(separator, ","), value);
-      fmt::print(file, "\n");
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto bits = std::bit_cast<std::uint64_t>(row(cell - first, static_cast<Index>(c)));
+        if (cell_text[c].bits != bits) {
+          const auto end = cell_text.begin() + static_cast<std::ptrdiff_t>(c);
+          const auto same =
+              std::find_if(cell_text.begin(), end, [&](const Digits& d) { return d.bits == bits; });
+          cell_text[c] = same != end ? *same : Digits(bits);
+        }
+        text.append(cell_text[c].text.data(), cell_text[c].size);
+        text += c + 1 < columns.size() ? ',' : '\n';
+      }
     }
+    fmt::print(file, "{}", text);
   }
 }
 
