@@ -29,9 +29,10 @@ constexpr double kChildrenOfCell = static_cast<double>(kChildren * kChildren);
 constexpr double kMissedLoad = 1e-2;
 /// Standard deviation over |q| of the largest noise that a right field is allowed.
 constexpr double kLargestNoise = 3e-3;
-/// Part of the largest bound by which a random error moves no number that is judged: files with all digits of
-/// a double have less.
-constexpr double kUnseen = 1e-13;
+/// Random errors over what friction leaves sticking cells in the mean, by which they move no number that is
+/// judged. Files with all digits of a double have less, unless nearly all cells slip: then the motion follows
+/// them.
+constexpr double kUnseen = 1e-14;
 /// Upper quartile of a normal distribution, in standard deviations.
 constexpr double kQuartile = 0.6745;
 
@@ -296,7 +297,8 @@ ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
 /// larger one of a draw and its opposite.
 Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const Regions& regions,
                     const solver::Step& load, const ArrayXd& size) {
-  if (!(size.maxCoeff() > kUnseen * contact.friction_bound.maxCoeff())) return {};
+  const ArrayXd left = (contact.friction_bound - solver::norms(right.traction)).max(0.0);
+  if (!(size.maxCoeff() > kUnseen * left.mean())) return {};
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   ArrayXd error(right.traction.size());

@@ -33,7 +33,8 @@ struct Program {
   const ArrayXd& motion(Index k) const { return motions[static_cast<std::size_t>(k)]; }
 };
 
-/// The sum of s.q + mu p |s|, |s| smoothed, and its derivatives in z.
+/// The sum of s.q + mu p |s|, |s| smoothed, and its derivatives in z; the second ones without a difference of
+/// near numbers, which would leave nothing of them where all cells slip.
 struct SmoothedGap {
   Coefficients z;
   double smoothed = 0.0;
@@ -47,7 +48,7 @@ SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoot
   const Index n = program.count();
   const Index cells = program.bound.size();
   SmoothedGap gap{z, 0.0, Coefficients::Zero(n), CoefficientMatrix::Zero(n, n)};
-  std::array<Block, kMaxConditions> along;
+  std::array<Block, kMaxConditions> across;
   for (Index first = 0; first < cells; first += kBlock) {
     const Index size = std::min(kBlock, cells - first);
     const auto bound = program.bound.segment(first, size);
@@ -62,6 +63,7 @@ SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoot
     }
     const Block length = (s1.square() + s2.square() + smoothing * smoothing).sqrt();
     const Block weight = bound / length;
+    const Block smoothed = (smoothing / length).square();
     const Block pull1 = part1(program.traction) + weight * s1;
     const Block pull2 = part2(program.traction) + weight * s2;
     gap.smoothed += (part1(program.traction) * s1 + part2(program.traction) * s2 + bound * length).sum();
@@ -69,12 +71,13 @@ SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoot
       const auto m1 = part1(program.motion(k));
       const auto m2 = part2(program.motion(k));
       gap.gradient[k] -= (pull1 * m1 + pull2 * m2).sum();
-      Block& here = along[static_cast<std::size_t>(k)];
-      here = (s1 * m1 + s2 * m2) / length;
+      Block& here = across[static_cast<std::size_t>(k)];
+      here = (s1 * m2 - s2 * m1) / length;
       for (Index l = 0; l <= k; ++l) {
-        gap.hessian(k, l) += (weight * (m1 * part1(program.motion(l)) + m2 * part2(program.motion(l)) -
-                                        here * along[static_cast<std::size_t>(l)]))
-                                 .sum();
+        gap.hessian(k, l) +=
+            (weight * (here * across[static_cast<std::size_t>(l)] +
+                       smoothed * (m1 * part1(program.motion(l)) + m2 * part2(program.motion(l)))))
+                .sum();
       }
     }
   }
