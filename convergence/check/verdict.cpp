@@ -274,8 +274,8 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
                                 allowed_text(allowed.force))});
 }
 
-/// Judges motion and tractions. Where the law of friction is broken, an inferred twist means little: no
-/// sentence mentions it.
+/// Judges motion and tractions. Where the law of friction is broken, or nothing sticks, a motion that is
+/// inferred means little, and is not judged.
 void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
   if (e.reference.right.scaled) return;  // the right motion and tractions belong to other loads
   const bool torsion = is_torsion(e.scene);
@@ -283,8 +283,8 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
   Judged motion = torsion ? judge_error("the twist", "twist", error, allowed.motion)
                           : judge_error("the rigid motion", "motion", error, allowed.motion);
   if (torsion && e.twist_given) motion.right = "the twist is right";
-  if (!e.twist_given && !lawful) motion.wrong.clear();
-  judged.push_back(motion);
+  const bool determined = e.twist_given || (lawful && (stick_cells(e.contact) > 0.0).any());
+  if (determined) judged.push_back(motion);
   const GivenContact& c = e.contact;
   const ArrayXd deviation = traction_deviation(e);
   judge_field(judged,

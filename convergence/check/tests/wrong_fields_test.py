@@ -57,6 +57,15 @@ class OneThingWrong(CheckTest):
         self.rows, solution = solve(self.scene)
         self.twist = solution["twist_angle"]
 
+    def test_one_component_off(self):
+        """Tractions that break the law have no twist of their own: only a reported one is judged."""
+        for column in (3, 4):
+            rows = self.rows.copy()
+            rows[:, column] *= 1.1
+            for twist, judges in ((None, False), (self.twist, True)):
+                result = self.bad(self.scene, rows, twist=twist, breaks=["moment_error", "slip_direction"])
+                self.assertEqual("twist" in [item["quantity"] for item in result["judged"]], judges)
+
     def test_friction_coefficient(self):
         """The last is beyond what friction can carry. Displacements and the twist that fits them grow with the tractions."""
         for factor, quantity in ((0.95, "moment_error"), (1.05, "friction_bound"), (1.2, "friction_bound")):
