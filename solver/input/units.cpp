@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -21,6 +22,11 @@ const Unit* find_unit(std::string_view word) {
 }
 
 std::optional<double> parse_number(std::string_view text, int power) {
+  double plain_value = 0.0;
+  const char* const last = text.data() + text.size();
+  if (const auto [end, error] = std::from_chars(text.data(), last, plain_value);
+      power == 0 && error == std::errc() && end == last)
+    return plain_value;
   std::string plain(text);
   std::ranges::replace(plain, ',', '.');
   if (power != 0 && plain.find_first_of("nN") == std::string::npos) {
