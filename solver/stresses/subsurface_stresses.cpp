@@ -1,0 +1,155 @@
+#include "solver/stresses/subsurface_stresses.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+namespace slipstick::solver {
+namespace {
+
+const Grid& whole(const Grid& grid) {
+  if (grid.quadrant || grid.ranks.several())
+    throw std::invalid_argument("stresses need a whole grid, on one rank");
+  return grid;
+}
+
+double von_mises(const std::array<double, kStresses>& s) {
+  const double d1 = s[k11] - s[k22];
+  const double d2 = s[k22] - s[k33];
+  const double d3 = s[k33] - s[k11];
+  const double shear = s[k12] * s[k12] + s[k13] * s[k13] + s[k23] * s[k23];
+  return std::sqrt(0.5 * (d1 * d1 + d2 * d2 + d3 * d3) + 3.0 * shear);
+}
+
+}  // namespace
+
+SubsurfaceStresses::SubsurfaceStresses(const SolutionFields& fields, double poisson, Body body, int threads)
+    : grid_(whole(fields.grid)), poisson_(poisson), transform_(grid_, 1, threads) {
+  const double sign = body == Body::lower ? 1.0 : -1.0;
+  const Index cells = grid_.cells();
+  const std::array<Eigen::ArrayXd, kTractions> given{fields.pressure, sign * fields.traction.head(cells),
+                                                     sign * fields.traction.tail(cells)};
+  const std::size_t size = count(transform_.columns() * length());
+  for (std::size_t b = 0; b < kTractions; ++b) {
+    if ((given[b] == 0.0).all()) continue;
+    tractions_[b].resize(size);
+    transform_.forward_rows({given[b].data(), count(cells)});
+    transform_.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
+      Complex* const to = tractions_[b].data() + column * length();
+      std::copy_n(spectrum.even[0], length() / 2, to);
+      std::copy_n(spectrum.odd[0], length() / 2, to + length() / 2);
+    });
+  }
+  for (auto& stress : stresses_) stress.resize(size);
+}
+
+/// Of offsets i, j >= 0; halved on the axes, where a quadrant's images coincide. A kernel is a second
+/// difference of its corner function at half cells.
+auto SubsurfaceStresses::quadrants(double depth) const -> std::array<Field, kStressKernels> {
+  std::array<Field, kStressKernels> result;
+  for (Field& field : result) field.resize(count(grid_.cells()));
+  const auto corners = [&](Index i) {
+    std::vector<KernelValues> row;
+    for (Index j = 0; j <= grid_.n2; ++j) {
+      const double x1 = (static_cast<double>(i) - 0.5) * grid_.h1;
+      const double x2 = (static_cast<double>(j) - 0.5) * grid_.h2;
+      row.push_back(corner_function(x1, x2, depth, poisson_));
+    }
+    return row;
+  };
+  const double scale = 1.0 / static_cast<double>(transform_.padded1() * transform_.padded2());
+  auto before = corners(0);
+  for (Index i = 0; i < grid_.n1; ++i) {
+    const auto after = corners(i + 1);
+    for (Index j = 0; j < grid_.n2; ++j) {
+      const double half = scale * (i == 0 ? 0.5 : 1.0) * (j == 0 ? 0.5 : 1.0);
+      const auto at = count(j);
+      for (std::size_t k = 0; k < kStressKernels; ++k) {
+        const double first = before[at + 1][k] - before[at][k];
+        result[k][count(i * grid_.n2 + j)] = half * (after[at + 1][k] - after[at][k] - first);
+      }
+    }
+    before = after;
+  }
+  return result;
+}
+
+/// Adds a kernel's product with its tractions to the spectra of its stresses. With Q the quadrant's spectrum,
+/// the kernel's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
+void SubsurfaceStresses::add(std::size_t kernel, Field& quadrant) {
+  const auto& [influences, uses, parity] = kernels[kernel];
+  bool needed = false;
+  for (std::size_t u = 0; u < uses; ++u) needed = needed || !tractions_[influences[u].traction].empty();
+  if (!needed) return;
+  transform_.forward_rows(quadrant);
+  const Index m = length() / 2;
+  const double sign = parity.x1;
+  const bool real = parity.x1 == parity.x2;
+  transform_.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
+    for (const bool odd : {false, true}) {
+      const Complex* const q = odd ? spectrum.odd[0] : spectrum.even[0];
+      const auto start = column * length() + (odd ? m : 0);
+      for (std::size_t u = 0; u < uses; ++u) {
+        const auto& traction = tractions_[influences[u].traction];
+        if (traction.empty()) continue;
+        const Complex* const from = traction.data() + start;
+        Complex* const to = stresses_[influences[u].stress].data() + start;
+        for (Index k = 0; k < m; ++k) {
+          const Complex sum = q[k] + sign * q[odd ? m - 1 - k : (k == 0 ? 0 : m - k)];
+          to[k] +=
+              real ? 2.0 * sum.real() * from[k] : 2.0 * sum.imag() * Complex(-from[k].imag(), from[k].real());
+        }
+      }
+    }
+  });
+}
+
+StressPlane SubsurfaceStresses::at(double depth) {
+  if (!(depth > 0.0)) throw std::domain_error("stresses are computed at depths above zero");
+  for (auto& stress : stresses_) std::fill(stress.begin(), stress.end(), Complex());
+  auto fields = quadrants(depth);
+  for (std::size_t kernel = 0; kernel < kStressKernels; ++kernel) add(kernel, fields[kernel]);
+  StressPlane plane{depth, {}};
+  for (std::size_t a = 0; a < kStresses; ++a) {
+    transform_.through_columns(0, 1, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
+      const Complex* const from = stresses_[a].data() + column * length();
+      std::copy_n(from, length() / 2, spectrum.even[0]);
+      std::copy_n(from + length() / 2, length() / 2, spectrum.odd[0]);
+    });
+    plane.stress[a].resize(grid_.cells());
+    transform_.backward_rows({plane.stress[a].data(), count(grid_.cells())});
+  }
+  return plane;
+}
+
+Severity severity(const std::array<double, kStresses>& s) {
+  Eigen::Matrix3d tensor;
+  tensor << s[k11], s[k12], s[k13], s[k12], s[k22], s[k23], s[k13], s[k23], s[k33];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor, Eigen::EigenvaluesOnly);
+  const auto& principal = solver.eigenvalues();
+  return {von_mises(s), principal[2] - principal[0], principal[2]};
+}
+
+/// Principal stresses are found only where they can be the largest: Tresca's number is at most 2/sqrt(3) of
+/// von Mises', and the largest principal stress exceeds the mean by at most 2/3 of it.
+void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
+  const auto keep = [&](Place& largest, double value, Index cell) {
+    if (value > largest.value)
+      largest = {value, {grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), plane.depth}};
+  };
+  for (Index cell = 0; cell < grid.cells(); ++cell) {
+    std::array<double, kStresses> stress;
+    for (std::size_t a = 0; a < kStresses; ++a) stress[a] = plane.stress[a][cell];
+    const double equivalent = solver::von_mises(stress);
+    keep(von_mises, equivalent, cell);
+    const double mean = (stress[k11] + stress[k22] + stress[k33]) / 3.0;
+    if (1.155 * equivalent < tresca.value && mean + 0.667 * equivalent < tension.value) continue;
+    const Severity numbers = severity(stress);
+    keep(tresca, numbers.tresca, cell);
+    keep(tension, numbers.tension, cell);
+  }
+}
+
+}  // namespace slipstick::solver
