@@ -65,7 +65,7 @@ double solved_multiple(double factor);
 RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load);
 
 /// Solves a problem on any grid for the contact's bodies, on one quadrant where the bound and the loads have
-/// two mirror axes. Of the fields only the traction is complete. Throws as find_right_answer().
+/// two mirror axes: only its traction is complete. Throws as find_right_answer().
 solver::TangentialSolution solve_problem(const GivenContact& contact, const solver::Grid& grid,
                                          solver::TangentialProblem problem);
 

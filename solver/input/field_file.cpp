@@ -97,22 +97,8 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
   return columns;
 }
 
-/// A double with 17 digits, which are read as the same double.
-struct Digits {
-  std::uint64_t bits = 0;
-  std::array<char, 32> text{'0'};
-  std::size_t size = 1;
-
-  Digits() = default;
-  explicit Digits(std::uint64_t of) : bits(of) {
-    char* const first = text.data();
-    const auto end =
-        std::to_chars(first, first + text.size(), std::bit_cast<double>(of), std::chars_format::general, 17);
-    size = static_cast<std::size_t>(end.ptr - first);
-  }
-};
-
-/// Numbers that a cell repeats, from the cell before or from another column, are put into digits once.
+/// Numbers that a cell repeats, from the cell before or from another column, are put into digits once: 17,
+/// which are read as the same double.
 void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns,
                const ArrayXd& keep) {
   std::vector<std::string> names;
@@ -120,7 +106,8 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   for (const FieldColumn& column : columns) names.push_back(column.name);
   fmt::print(file, "{}\n", fmt::join(names, ","));
   Eigen::ArrayXXd row(grid.n2, static_cast<Index>(columns.size()));
-  std::vector<Digits> cell_text(columns.size());  // of a cell, and until then of the one before
+  std::vector<std::pair<std::uint64_t, std::string>> digits(columns.size(), {0, "0"});  // of a double's bits
+  std::array<char, 32> buffer;
   std::string text;
   for (Index first = 0; first < grid.cells(); first += grid.n2) {
     const Index last = first + grid.n2;
@@ -130,14 +117,20 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
     for (Index cell = first; cell < last; ++cell) {
       if (keep[cell] == 0.0) continue;
       for (std::size_t c = 0; c < columns.size(); ++c) {
-        const auto bits = std::bit_cast<std::uint64_t>(row(cell - first, static_cast<Index>(c)));
-        if (cell_text[c].bits != bits) {
-          const auto end = cell_text.begin() + static_cast<std::ptrdiff_t>(c);
-          const auto same =
-              std::find_if(cell_text.begin(), end, [&](const Digits& d) { return d.bits == bits; });
-          cell_text[c] = same != end ? *same : Digits(bits);
+        const double value = row(cell - first, static_cast<Index>(c));
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        if (digits[c].first != bits) {
+          const auto end = digits.begin() + static_cast<std::ptrdiff_t>(c);
+          const auto same = std::find_if(digits.begin(), end, [&](const auto& d) { return d.first == bits; });
+          if (same != end) {
+            digits[c] = *same;
+          } else {
+            const auto last =
+                std::to_chars(buffer.begin(), buffer.end(), value, std::chars_format::general, 17);
+            digits[c] = {bits, std::string(buffer.data(), last.ptr)};
+          }
         }
-        text.append(cell_text[c].text.data(), cell_text[c].size);
+        text += digits[c].second;
         text += c + 1 < columns.size() ? ',' : '\n';
       }
     }
