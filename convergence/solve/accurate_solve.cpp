@@ -74,6 +74,14 @@ void make_more_parts(Scene& scene, AccuracyTarget& target) {
   target.path = std::min(left / scene.solver.substeps, kMaxPathPart * target.error);
 }
 
+/// The same of a coarse answer, with what the correction of a mean over shifted grids leaves.
+double path_left(const Scene& scene) {
+  const solver::Solution solution = solve_with_path(scene);
+  if (!takes_shifted_grids(scene, AccuracyOf::twist)) return path_of(solution);
+  const std::optional<PathCorrection> correction = path_correction(scene, solution);
+  return correction ? correction->uncertainty : path_of(solution);
+}
+
 /// The scene with the number of parts of its steps that the target needs, found on few cells; target.path
 /// gets their error.
 Scene with_parts(Scene scene, AccuracyTarget& target) {
@@ -85,13 +93,18 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
     if (trial > 0 && steps * static_cast<std::size_t>(scene.solver.substeps) > kPathTrialParts) return scene;
     double path = 0.0;
     try {
-      path = path_of(solve_with_path(coarse));
+      path = path_left(coarse);
     } catch (const InputError&) {
       return scene;  // the chosen mesh may carry the loads; if not, its solve throws the error
     }
     target.path = path;
     if (!(path > kPathPart * target.error)) return scene;
-    make_more_parts(scene, target);
+    if (takes_shifted_grids(scene, target.of) && scene.solver.substeps < kFewestCorrected) {
+      scene.solver.substeps = kFewestCorrected;
+      target.path = std::min(path, kMaxPathPart * target.error);
+    } else {
+      make_more_parts(scene, target);
+    }
   }
   return scene;
 }
@@ -137,7 +150,8 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
     reached = {std::abs(mean.error), "exact",
                fmt::format("the mean of {} grids against the exact answer", mean.grids.size())};
   }
-  const double path = reached.how == "exact" ? 0.0 : path_of(mean.answer.solution);
+  double path = reached.how == "exact" ? 0.0 : path_of(mean.answer.solution);
+  if (mean.path) path = mean.path->uncertainty;
   return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids), path};
 }
 

@@ -229,9 +229,15 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   found.uncertainty = is_beyond_data(scene) ? expected + scatter : std::max(kOfScatter * scatter, expected);
   found.why =
       fmt::format("by data on such meshes and the scatter of {} grids, {:.2g}", values.size(), scatter);
+  double mean = moments.mean;
+  if (!std::isfinite(found.error)) found.path = path_correction(scene, found.answer.solution);
+  if (found.path) {
+    mean *= 1.0 + found.path->change;
+    found.why += fmt::format("; {:.2g} of it added for the length of the steps", found.path->change);
+  }
   SolveRecord& record = found.answer.record;
-  put_mean(record.end, quantity, moments.mean, found.error);
-  if (record.history) put_mean(record.history->steps.back().end, quantity, moments.mean, found.error);
+  put_mean(record.end, quantity, mean, found.error);
+  if (record.history) put_mean(record.history->steps.back().end, quantity, mean, found.error);
   return found;
 }
 

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accuracy.hpp"
 
@@ -58,6 +60,8 @@ struct ShiftedMean {
   double uncertainty;
   std::string why;                 ///< basis of the uncertainty, or which grid did not converge
   std::vector<ShiftedGrid> grids;  ///< in the order of their solves
+  /// That the record's mean includes.
+  std::optional<PathCorrection> path = {};
 };
 ShiftedMean mean_over_shifted_grids(const solver::Scene& scene, const AccuracyQuantity& quantity,
                                     const ContactForm& form, const ContactOnGrid& contact,

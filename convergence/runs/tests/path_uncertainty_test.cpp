@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -50,6 +52,31 @@ TEST_F(PathOfLoads, ATwistOfASurfaceOfRevolutionHasNoPath) {
   EXPECT_EQ(solved(loop).resolution.path.twist, 0.0);
   EXPECT_GT(solved(loop, {"contact.coupling=\"pressure\"", "lower.young_modulus=70e9"}).resolution.path.twist,
             0.0);
+}
+
+// An ellipse's error falls like 1/n. Its extrapolated twist is that of four times as many parts, extrapolated
+// on its own mesh, within what is stated; one that is not extrapolated is further off.
+TEST_F(PathOfLoads, AnEllipseIsCorrectedToTheTwistOfManyParts) {
+  const auto ellipse = [&](int parts) {
+    Scene scene = paper_scene(40, 0.85);
+    Surface& upper = scene.surfaces.front();
+    upper.shape = Shape::ellipsoid;
+    upper.radius_1 = 2.0 * upper.radius;
+    upper.radius_2 = upper.radius;
+    scene.solver.substeps = parts;
+    return std::pair(scene, solve(scene));
+  };
+  const auto [scene, few] = ellipse(8);
+  const double fine = ellipse(32).second.twist_angle;
+  const double finer = ellipse(64).second.twist_angle;
+  const double limit = 2.0 * finer - fine;
+  const std::optional<PathCorrection> found = path_correction(scene, few);
+  ASSERT_TRUE(found);
+  const double off = few.twist_angle * (1.0 + found->change) - limit;
+  EXPECT_LE(std::abs(off), found->uncertainty * limit);
+  EXPECT_LT(found->uncertainty * limit, std::abs(few.twist_angle - limit));
+  EXPECT_NEAR((few.twist_angle - limit) / (fine - limit), 4.0, 1.5);
+  EXPECT_FALSE(path_correction(ellipse(2).first, few));
 }
 
 // Their gaps add up to that of one cone.
