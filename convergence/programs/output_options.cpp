@@ -20,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The options of all commands that name an output file.
-constexpr std::array<std::string_view, 14> kOutputs{
-    "--json",  "--fields",     "--figure",    "--loop",    "--summary", "--junit",   "--accuracy-data",
-    "--write", "--checkpoint", "--list-runs", "--history", "--badge",   "--bencher", "--benchmark-action"};
+constexpr std::array<std::string_view, 15> kOutputs{
+    "--json",    "--fields",     "--figure",    "--loop",    "--summary", "--junit",   "--accuracy-data",
+    "--write",   "--checkpoint", "--list-runs", "--history", "--badge",   "--bencher", "--benchmark-action",
+    "--stresses"};
 /// Prefix of a file's name in `exact --profile`.
 constexpr std::string_view kProfileFile = "file:";
 

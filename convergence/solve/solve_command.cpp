@@ -89,6 +89,21 @@ void add_file_options(CLI::App& command, SolveWords& words) {
       "write loads, motions and energies at the end of each step of a history, a row a step: .csv");
 }
 
+void add_stress_options(CLI::App& command, StressFiles& stresses) {
+  CLI::Option* const depths =
+      command
+          .add_option("--depths", stresses.depth_words,
+                      "depths below the surface, in m or with a unit: 20um,\"0.1 mm\"")
+          ->delimiter(',');
+  CLI::Option* const file = command.add_option(
+      "--stresses", stresses.file,
+      "write the stresses below the surface at --depths, of a history after the last step: .h5, .csv or "
+      ".vti; of several depths each to its own file, where the name holds {depth}");
+  file->needs(depths);
+  depths->needs(file);
+  for (const char* const option : {"--accuracy", "--plan"}) file->excludes(command.get_option(option));
+}
+
 void require_file_formats(const AnswerFiles& files) {
   if (!files.fields.empty()) solver::require_field_format(files.fields);
   if (!files.figure.empty()) require_figure_format(files.figure);
@@ -122,6 +137,9 @@ void require_scene_kept(const CLI::App& command, const std::string& fields, cons
 void require_shared_by_ranks(const SolveWords& words, const Scene& scene) {
   if (words.accuracy) {
     throw InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
+  }
+  if (!words.request.stresses.file.empty()) {
+    throw InputError("--stresses", "not on several ranks; allowed: one rank");
   }
   if (scene.solver.rounding_seed != 0) {
     throw InputError("solver.rounding_seed", "not on several ranks; allowed: 0");
@@ -182,8 +200,11 @@ SolveRequest request_of(const CLI::App& command, SolveWords words) {
   request.scene = request.source.read();
   if (!request.scene.solver.program.empty()) require_for_programs(words);
   if (request.ranks.several()) require_shared_by_ranks(words, request.scene);
+  if (!request.stresses.file.empty()) request.stresses.read_depths(request.scene);
   require_scene_kept(command, request.files.fields, request.scene);
   require_output("--fields", request.files.fields);
+  for (std::size_t d = 0; d < request.stresses.depths.size(); ++d)
+    require_output("--stresses", request.stresses.name(d));
   require_output("--loop", request.files.loop);
   require_output("--checkpoint", request.checkpoint.file);
   if (words.accuracy) set_target(words, request);
@@ -212,6 +233,7 @@ RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
   add_program_options(*command, words->request.source.overrides, words->allow_programs);
   add_accuracy_options(*command, *words);
   add_file_options(*command, *words);
+  add_stress_options(*command, words->request.stresses);
   add_memory_option(*command, words->request.source.memory_limit);
   constexpr const char* kHidden = "";
   command->add_option("--keep", words->keep, "folder that keeps the results of runs from standard input")

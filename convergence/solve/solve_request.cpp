@@ -166,6 +166,8 @@ SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json
                            ? solve_or_keep_steps(request.scene, grid_options(request), result)
                            : solve_with_checkpoint(request, result);
   result = to_json(solved.record);
+  if (!request.stresses.file.empty())
+    result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);
   write_answer(request, solved, text, result);
   return std::move(solved.record);
 }

@@ -9,6 +9,7 @@
 
 #include "convergence/solve/accuracy.hpp"
 #include "convergence/solve/scene_file.hpp"
+#include "convergence/solve/stress_files.hpp"
 #include "solver/grid/ranks.hpp"
 #include "solver/scene/scene.hpp"
 
@@ -45,6 +46,7 @@ struct SolveRequest {
   int planned_ranks = 1;
   std::vector<UncertainInput> uncertain = {};  ///< they give the answer its uncertainty
   AnswerFiles files = {};
+  StressFiles stresses = {};
   CheckpointFile checkpoint = {};
   solver::Ranks ranks = {};  ///< they share the solve
 };

@@ -250,11 +250,11 @@ Eigen::ArrayXXd read_matrix(const path& file, const std::string& dataset) {
   return read_text_matrix(file, kMaxHeights);
 }
 
-void require_field_format(const path& file) {
+void require_field_format(const path& file, const std::string& option) {
   if (is_hdf5(file)) {
     hdf5_library(file);
   } else if (file.extension() != ".csv" && file.extension() != ".vti") {
-    throw InputError("--fields", file.string(), file.extension().string(), ".h5, .hdf5, .csv, .vti");
+    throw InputError(option, file.string(), file.extension().string(), ".h5, .hdf5, .csv, .vti");
   }
 }
 

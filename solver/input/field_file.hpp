@@ -52,8 +52,8 @@ std::vector<Index> cells_of_rows(const std::filesystem::path& file, const Grid& 
 /// dataset. A number that is missing, an empty or "nan" cell of a CSV file, is NaN.
 Eigen::ArrayXXd read_matrix(const std::filesystem::path& file, const std::string& dataset);
 
-/// Throws InputError unless the ending is one that write_fields knows.
-void require_field_format(const std::filesystem::path& file);
+/// Throws InputError, which names the option, unless the ending is one that write_fields knows.
+void require_field_format(const std::filesystem::path& file, const std::string& option = "--fields");
 
 /// The ending of the files of fields that this program's own scripts read: .h5, or .csv where the HDF5
 /// library is not installed.

@@ -17,7 +17,7 @@ constexpr StressKernel shared(Influence first, Influence second, Parity parity) 
 
 }  // namespace
 
-const std::array<StressKernel, kStressKernels> kernels{
+const std::array<StressKernel, kStressKernels> stress_kernels{
     one(kPressure, k11, {1, 1}),
     one(kPressure, k22, {1, 1}),
     one(kPressure, k33, {1, 1}),
@@ -44,28 +44,16 @@ const std::array<StressKernel, kStressKernels> kernels{
 /// Below, a name such as Hx is the primitive in x and y of H_x, less what the four corners cancel.
 KernelValues corner_function(double x, double y, double z, double nu) {
   const double R = std::sqrt(x * x + y * y + z * z);
-  const double inverse = 1.0 / R;
-  const double xz = x * x + z * z;
-  const double yz = y * y + z * z;
-  const double inverse_lz = 1.0 / (R + z);
-  const double Lxx = std::atan(x * y / (xz + R * z));
-  const double Lyy = std::atan(x * y / (yz + R * z));
+  const double xz = x * x + z * z, yz = y * y + z * z;
+  const double Lxx = std::atan(x * y / (xz + R * z)), Lyy = std::atan(x * y / (yz + R * z));
   const double Lxy = std::log(R + z);
-  const double Hx = std::asinh(y / std::sqrt(xz));
-  const double Hy = std::asinh(x / std::sqrt(yz));
-  const double Hz = -Lxx - Lyy;
-  const double Hxx = -x * y * inverse / xz;
-  const double Hyy = -x * y * inverse / yz;
-  const double Hxy = inverse;
-  const double Hxz = -z * y * inverse / xz;
-  const double Hyz = -z * x * inverse / yz;
-  const double Lx = x * inverse * inverse_lz;
-  const double Ly = y * inverse * inverse_lz;
-  const double Vx = -x * inverse_lz;
-  const double Vy = -y * inverse_lz;
-  const double s = 1.0 - 2.0 * nu;
-  const double t = 2.0 * nu;
-  constexpr double kScale = 0.5 * std::numbers::inv_pi;
+  const double Hx = std::asinh(y / std::sqrt(xz)), Hy = std::asinh(x / std::sqrt(yz)), Hz = -Lxx - Lyy;
+  const double Hxy = 1.0 / R;
+  const double Hxx = -x * y * Hxy / xz, Hyy = -x * y * Hxy / yz;
+  const double Hxz = -z * y * Hxy / xz, Hyz = -z * x * Hxy / yz;
+  const double Vx = -x / (R + z), Vy = -y / (R + z);
+  const double Lx = -Vx * Hxy, Ly = -Vy * Hxy;
+  const double s = 1.0 - 2.0 * nu, t = 2.0 * nu;
   KernelValues values{-z * Hxx - s * Lxx + t * Hz,
                       -z * Hyy - s * Lyy + t * Hz,
                       Hz + z * (Hxx + Hyy),
@@ -81,19 +69,8 @@ KernelValues corner_function(double x, double y, double z, double nu) {
                       2.0 * Hy + z * (Hyz + Lx) - t * Vx,
                       Hx - z * Ly + t * Vy,
                       Hz - z * Hyy};
-  for (double& value : values) value *= kScale;
+  for (double& value : values) value *= 0.5 * std::numbers::inv_pi;
   return values;
-}
-
-KernelValues cell_stress(double x1, double x2, double depth, const Grid& cell, double poisson) {
-  KernelValues sum{};
-  for (const double side1 : {-0.5, 0.5}) {
-    for (const double side2 : {-0.5, 0.5}) {
-      const KernelValues corner = corner_function(x1 - side1 * cell.h1, x2 - side2 * cell.h2, depth, poisson);
-      for (std::size_t k = 0; k < kStressKernels; ++k) sum[k] += side1 * side2 * 4.0 * corner[k];
-    }
-  }
-  return sum;
 }
 
 }  // namespace slipstick::solver

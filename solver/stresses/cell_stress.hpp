@@ -28,17 +28,14 @@ struct StressKernel {
   Parity parity;
 };
 inline constexpr std::size_t kStressKernels = 15;
-extern const std::array<StressKernel, kStressKernels> kernels;
+extern const std::array<StressKernel, kStressKernels> stress_kernels;
 
 /// Values of all kernels.
 using KernelValues = std::array<double, kStressKernels>;
 
 /// Second primitive in x1 and x2 of each kernel's point solution, with its kernel's opposite parity: a kernel
-/// is the difference of its values at the four corners of the cell. depth > 0.
+/// is the difference of its values at the four corners of the cell. depth > 0. The tractions are one and
+/// point along x3 (pressure), x1 and x2; a tensile stress is positive.
 KernelValues corner_function(double x1, double x2, double depth, double poisson);
-
-/// At the point (x1, x2, depth), of the cell (-h1/2, h1/2) x (-h2/2, h2/2) under unit tractions. The
-/// tractions point along x3 (pressure), x1 and x2; a tensile stress is positive.
-KernelValues cell_stress(double x1, double x2, double depth, const Grid& cell, double poisson);
 
 }  // namespace slipstick::solver

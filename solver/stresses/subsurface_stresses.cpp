@@ -15,14 +15,6 @@ const Grid& whole(const Grid& grid) {
   return grid;
 }
 
-double von_mises(const std::array<double, kStresses>& s) {
-  const double d1 = s[k11] - s[k22];
-  const double d2 = s[k22] - s[k33];
-  const double d3 = s[k33] - s[k11];
-  const double shear = s[k12] * s[k12] + s[k13] * s[k13] + s[k23] * s[k23];
-  return std::sqrt(0.5 * (d1 * d1 + d2 * d2 + d3 * d3) + 3.0 * shear);
-}
-
 }  // namespace
 
 SubsurfaceStresses::SubsurfaceStresses(const SolutionFields& fields, double poisson, Body body, int threads)
@@ -45,8 +37,8 @@ SubsurfaceStresses::SubsurfaceStresses(const SolutionFields& fields, double pois
   for (auto& stress : stresses_) stress.resize(size);
 }
 
-/// Of offsets i, j >= 0; halved on the axes, where a quadrant's images coincide. A kernel is a second
-/// difference of its corner function at half cells.
+/// The offsets are i, j >= 0; values are halved on the axes, where a quadrant's images coincide. A kernel is
+/// a second difference of its corner function at half cells.
 auto SubsurfaceStresses::quadrants(double depth) const -> std::array<Field, kStressKernels> {
   std::array<Field, kStressKernels> result;
   for (Field& field : result) field.resize(count(grid_.cells()));
@@ -79,7 +71,7 @@ auto SubsurfaceStresses::quadrants(double depth) const -> std::array<Field, kStr
 /// Adds a kernel's product with its tractions to the spectra of its stresses. With Q the quadrant's spectrum,
 /// the kernel's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
 void SubsurfaceStresses::add(std::size_t kernel, Field& quadrant) {
-  const auto& [influences, uses, parity] = kernels[kernel];
+  const auto& [influences, uses, parity] = stress_kernels[kernel];
   bool needed = false;
   for (std::size_t u = 0; u < uses; ++u) needed = needed || !tractions_[influences[u].traction].empty();
   if (!needed) return;
@@ -124,14 +116,6 @@ StressPlane SubsurfaceStresses::at(double depth) {
   return plane;
 }
 
-Severity severity(const std::array<double, kStresses>& s) {
-  Eigen::Matrix3d tensor;
-  tensor << s[k11], s[k12], s[k13], s[k12], s[k22], s[k23], s[k13], s[k23], s[k33];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor, Eigen::EigenvaluesOnly);
-  const auto& principal = solver.eigenvalues();
-  return {von_mises(s), principal[2] - principal[0], principal[2]};
-}
-
 /// Principal stresses are found only where they can be the largest: Tresca's number is at most 2/sqrt(3) of
 /// von Mises', and the largest principal stress exceeds the mean by at most 2/3 of it.
 void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
@@ -140,15 +124,17 @@ void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
       largest = {value, {grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), plane.depth}};
   };
   for (Index cell = 0; cell < grid.cells(); ++cell) {
-    std::array<double, kStresses> stress;
-    for (std::size_t a = 0; a < kStresses; ++a) stress[a] = plane.stress[a][cell];
-    const double equivalent = solver::von_mises(stress);
+    std::array<double, kStresses> s;
+    for (std::size_t a = 0; a < kStresses; ++a) s[a] = plane.stress[a][cell];
+    const double equivalent = solver::von_mises(s);
     keep(von_mises, equivalent, cell);
-    const double mean = (stress[k11] + stress[k22] + stress[k33]) / 3.0;
+    const double mean = (s[k11] + s[k22] + s[k33]) / 3.0;
     if (1.155 * equivalent < tresca.value && mean + 0.667 * equivalent < tension.value) continue;
-    const Severity numbers = severity(stress);
-    keep(tresca, numbers.tresca, cell);
-    keep(tension, numbers.tension, cell);
+    Eigen::Matrix3d tensor;
+    tensor << s[k11], s[k12], s[k13], s[k12], s[k22], s[k23], s[k13], s[k23], s[k33];
+    const Eigen::Vector3d principal = tensor.selfadjointView<Eigen::Lower>().eigenvalues();
+    keep(tresca, principal[2] - principal[0], cell);
+    keep(tension, principal[2], cell);
   }
 }
 

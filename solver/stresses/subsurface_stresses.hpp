@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <complex>
 #include <limits>
 #include <vector>
@@ -12,7 +13,7 @@
 
 namespace slipstick::solver {
 
-/// Of the two bodies in contact. The tractions of a solution act on the lower body as they stand, on the
+/// One of the two bodies in contact. The tractions of a solution act on the lower body as they stand, on the
 /// upper one with the opposite sign; the pressure presses into both.
 enum class Body { lower, upper };
 
@@ -50,23 +51,27 @@ class SubsurfaceStresses {
   std::array<std::vector<Complex>, kStresses> stresses_;
 };
 
-/// Numbers that criteria of yield and fracture compare with a strength, Pa.
-struct Severity {
-  double von_mises;  ///< equivalent tensile stress
-  double tresca;     ///< largest less smallest principal stress
-  double tension;    ///< largest principal stress; negative: all are compressive
-};
-Severity severity(const std::array<double, kStresses>& stress);
+/// Von Mises' stress of a tensor, or of a plane's.
+template <typename Number>
+Number von_mises(const std::array<Number, kStresses>& s) {
+  const Number d1 = s[k11] - s[k22];
+  const Number d2 = s[k22] - s[k33];
+  const Number d3 = s[k33] - s[k11];
+  const Number shear = s[k12] * s[k12] + s[k13] * s[k13] + s[k23] * s[k23];
+  using std::sqrt;
+  return sqrt(0.5 * (d1 * d1 + d2 * d2 + d3 * d3) + 3.0 * shear);
+}
 
-/// The largest values of each number, and where: x1, x2 and depth, m. Of equal ones the first is kept.
+/// The largest numbers that criteria of yield and fracture compare with a strength, Pa, and where: x1, x2 and
+/// depth, m. The first of equal ones is kept.
 struct LargestStresses {
   struct Place {
     double value = -std::numeric_limits<double>::infinity();
     std::array<double, 3> at{};
   };
-  Place von_mises;
-  Place tresca;
-  Place tension;
+  Place von_mises;  ///< equivalent tensile stress
+  Place tresca;     ///< largest less smallest principal stress
+  Place tension;    ///< largest principal stress; negative: all are compressive
 
   void include(const StressPlane& plane, const Grid& grid);
 };
