@@ -92,6 +92,7 @@ class Results(unittest.TestCase):
             self.solve(scene)
         self.solve("paper", "--set", "solver.method=paper")
         self.solve("paper", "--set", "load.moment_ratio=0")
+        self.solve("paper", "--stresses", self.folder / "stress.csv", "--depths", "1e-4")
         self.solve("paper", "--set", "contact.friction=0", "--set", "load.moment_ratio=0")
         self.solve("torsion_and_force", "--set", "solver.substeps=4", "--set", "solver.max_iterations=3", code=1)
         self.run_and_check("solve", SCENES / "honed_surface.toml")

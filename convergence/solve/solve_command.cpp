@@ -203,8 +203,10 @@ SolveRequest request_of(const CLI::App& command, SolveWords words) {
   if (!request.stresses.file.empty()) request.stresses.read_depths(request.scene);
   require_scene_kept(command, request.files.fields, request.scene);
   require_output("--fields", request.files.fields);
-  for (std::size_t d = 0; d < request.stresses.depths.size(); ++d)
+  for (std::size_t d = 0; d < request.stresses.depths.size(); ++d) {
+    require_input_kept("--stresses", request.stresses.name(d), input_files(request.scene));
     require_output("--stresses", request.stresses.name(d));
+  }
   require_output("--loop", request.files.loop);
   require_output("--checkpoint", request.checkpoint.file);
   if (words.accuracy) set_target(words, request);

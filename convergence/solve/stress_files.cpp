@@ -1,7 +1,5 @@
 #include "convergence/solve/stress_files.hpp"
 
-#include <fmt/ranges.h>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,13 +9,10 @@
 #include "solver/stresses/subsurface_stresses.hpp"
 
 namespace slipstick::convergence {
-namespace {
 
 using solver::InputError;
 
 constexpr std::string_view kDepthNumber = "{depth}";
-
-}  // namespace
 
 std::string StressFiles::name(std::size_t depth) const {
   std::string name = file;

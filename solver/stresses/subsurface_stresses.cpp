@@ -2,8 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <stdexcept>
 
 namespace slipstick::solver {
@@ -44,11 +42,9 @@ auto SubsurfaceStresses::quadrants(double depth) const -> std::array<Field, kStr
   for (Field& field : result) field.resize(count(grid_.cells()));
   const auto corners = [&](Index i) {
     std::vector<KernelValues> row;
-    for (Index j = 0; j <= grid_.n2; ++j) {
-      const double x1 = (static_cast<double>(i) - 0.5) * grid_.h1;
-      const double x2 = (static_cast<double>(j) - 0.5) * grid_.h2;
-      row.push_back(corner_function(x1, x2, depth, poisson_));
-    }
+    const double x1 = (static_cast<double>(i) - 0.5) * grid_.h1;
+    for (Index j = 0; j <= grid_.n2; ++j)
+      row.push_back(corner_function(x1, (static_cast<double>(j) - 0.5) * grid_.h2, depth, poisson_));
     return row;
   };
   const double scale = 1.0 / static_cast<double>(transform_.padded1() * transform_.padded2());
@@ -72,9 +68,7 @@ auto SubsurfaceStresses::quadrants(double depth) const -> std::array<Field, kStr
 /// the kernel's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
 void SubsurfaceStresses::add(std::size_t kernel, Field& quadrant) {
   const auto& [influences, uses, parity] = stress_kernels[kernel];
-  bool needed = false;
-  for (std::size_t u = 0; u < uses; ++u) needed = needed || !tractions_[influences[u].traction].empty();
-  if (!needed) return;
+  if (tractions_[influences[0].traction].empty() && tractions_[influences[1].traction].empty()) return;
   transform_.forward_rows(quadrant);
   const Index m = length() / 2;
   const double sign = parity.x1;
