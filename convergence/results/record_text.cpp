@@ -218,6 +218,15 @@ std::string energy_text(const SolveRecord& record) {
                                    number_text(certificate.energy_error)));
 }
 
+std::string continuum_text(const CertificateRecord& certificate) {
+  if (!certificate.continuum) return "";
+  const auto& [gap, energy, quadrature_error] = *certificate.continuum;
+  if (std::isnan(gap)) return text_line("continuum", "no gap: " + gap.why_missing);
+  return text_line("continuum",
+                   fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
+                               number_text(gap), number_text(quadrature_error)));
+}
+
 std::string certificate_text(const SolveRecord& record) {
   const CertificateRecord& certificate = record.end.certificate;
   const solver::FrictionKind law = friction_law_of(record.end.friction.law);
@@ -229,7 +238,7 @@ std::string certificate_text(const SolveRecord& record) {
                    fmt::format("gap/energy {}, moment off by {}, |q| above {} by {}",
                                number_text(certificate.gap), number_text(certificate.moment),
                                solver::bound_text(law), number_text(certificate.friction_bound))) +
-         energy_text(record) +
+         energy_text(record) + continuum_text(certificate) +
          text_line("slip direction", direction.mean.why_missing == kNoSlip ? kNoSlip : angles);
 }
 

@@ -55,6 +55,12 @@ void list_fields(auto& fields, Is<LimitRecord> auto& limit) {
   fields("direction", limit.direction);
 }
 
+void list_fields(auto& fields, Is<ContinuumRecord> auto& continuum) {
+  fields("gap", continuum.gap);
+  fields("energy", continuum.energy);
+  fields("quadrature_error", continuum.quadrature_error);
+}
+
 void list_fields(auto& fields, Is<CertificateRecord> auto& certificate) {
   fields("gap", certificate.gap);
   fields("energy_error", certificate.energy_error);
@@ -63,6 +69,7 @@ void list_fields(auto& fields, Is<CertificateRecord> auto& certificate) {
   fields("force", certificate.force);
   fields("friction_bound", certificate.friction_bound);
   fields("energy", certificate.energy);
+  fields("continuum", certificate.continuum);
 }
 
 void list_fields(auto& fields, Is<PathsRecord> auto& paths) {

@@ -106,6 +106,13 @@ struct EnergyRecord {
   std::optional<Number> dissipated_total = {};  ///< since the first step began
 };
 
+/// See solver::ContinuumGap; missing numbers have the reason.
+struct ContinuumRecord {
+  Number gap = {};
+  Number energy = {};  ///< J
+  Number quadrature_error = {};
+};
+
 /// See solver::Certificate.
 struct CertificateRecord {
   Number gap = {};
@@ -115,6 +122,7 @@ struct CertificateRecord {
   Number force = {};
   Number friction_bound = {};
   std::optional<Number> energy = {};  ///< J; fields of other programs have none
+  std::optional<ContinuumRecord> continuum = {};
 };
 
 /// The uncertainty of each number by the length of the steps.

@@ -59,6 +59,12 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
   command.add_flag("--plan", words.request.plan, "predict memory and time of the solve, and stop")
       ->excludes(command.get_option("--uncertain"));
   command
+      .add_flag("--continuum", words.request.continuum,
+                "bound the distance from the law of friction in all of the contact, not only at the cells' "
+                "centres: certificate.continuum")
+      ->excludes(command.get_option("--plan"))
+      ->excludes(command.get_option("--accuracy"));
+  command
       .add_option("--ranks", words.request.planned_ranks,
                   "with --plan: number of MPI ranks that share the solve; the memory is that of one rank")
       ->needs(command.get_option("--plan"))

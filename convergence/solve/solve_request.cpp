@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <tuple>
 
 #include "convergence/oracle/oracle.hpp"
@@ -27,6 +28,7 @@
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
+#include "solver/step/continuum_gap.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -161,10 +163,24 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
   return solve_or_keep_steps(request.scene, options, result);
 }
 
+/// The gap of the continuous problem, or the reason why it has none.
+ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solution& solution) {
+  try {
+    const auto [gap, energy, quadrature_error] = solver::continuum_gap(scene, solution);
+    const std::string broken = "the fields are not finite";
+    return {number_or(gap, broken), number_or(energy, broken), number_or(quadrature_error, broken)};
+  } catch (const std::invalid_argument& refused) {
+    const Number missing{.why_missing = refused.what()};
+    return {missing, missing, missing};
+  }
+}
+
 SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json& result) {
   SolvedScene solved = request.checkpoint.file.empty()
                            ? solve_or_keep_steps(request.scene, grid_options(request), result)
                            : solve_with_checkpoint(request, result);
+  if (request.continuum)
+    solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
   result = to_json(solved.record);
   if (!request.stresses.file.empty())
     result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);

@@ -1,0 +1,158 @@
+#include "solver/step/continuum_gap.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/model/make_model.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// Integrals over the contact by sums over 10 x 10 points of each cell, with displacements as sums over cells
+/// of the corner terms of Cerruti's solution, without a convolution.
+struct DirectSums {
+  double gap;
+  double energy;
+};
+
+DirectSums direct_sums(const Solution& solution, double friction, double nu) {
+  constexpr int kPoints = 10;
+  const Grid& grid = solution.grid;
+  const ArrayXd x1 = cell_x1(grid);
+  const ArrayXd x2 = cell_x2(grid);
+  const Index n = grid.cells();
+  const auto corner = [&](double x, double y) -> std::array<double, 3> {
+    const double along = y * std::asinh(x / std::abs(y));
+    const double across = x * std::asinh(y / std::abs(x));
+    return {along + (1.0 - nu) * across, across + (1.0 - nu) * along, -nu * std::hypot(x, y)};
+  };
+  const auto slip_at = [&](double at1, double at2) {
+    std::array<double, 2> u{};
+    for (Index cell = 0; cell < n; ++cell) {
+      const double q1 = solution.traction[cell];
+      const double q2 = solution.traction[n + cell];
+      if (q1 == 0.0 && q2 == 0.0) continue;
+      std::array<double, 3> k{};
+      for (const double sign1 : {-1.0, 1.0}) {
+        for (const double sign2 : {-1.0, 1.0}) {
+          const auto term =
+              corner(at1 - x1[cell] + 0.5 * sign1 * grid.h1, at2 - x2[cell] + 0.5 * sign2 * grid.h2);
+          for (std::size_t c = 0; c < 3; ++c) k[c] += sign1 * sign2 * term[c];
+        }
+      }
+      const double scale = 1.0 / (2.0 * std::numbers::pi * solution.shear_modulus);
+      u[0] += scale * (k[0] * q1 + k[2] * q2);
+      u[1] += scale * (k[2] * q1 + k[1] * q2);
+    }
+    return u;
+  };
+  DirectSums sums{};
+  for (Index cell = 0; cell < n; ++cell) {
+    const double q1 = solution.traction[cell];
+    const double q2 = solution.traction[n + cell];
+    for (int i = 0; i < kPoints * kPoints && solution.pressure[cell] > 0.0; ++i) {
+      const double at1 = x1[cell] + ((i / kPoints + 0.5) / kPoints - 0.5) * grid.h1;
+      const double at2 = x2[cell] + ((i % kPoints + 0.5) / kPoints - 0.5) * grid.h2;
+      const auto [u1, u2] = slip_at(at1, at2);
+      const double s1 = u1 + solution.twist_angle * at2;
+      const double s2 = u2 - solution.twist_angle * at1;
+      const double part = grid.cell_area() / (kPoints * kPoints);
+      sums.gap += part * (q1 * s1 + q2 * s2 + friction * solution.pressure[cell] * std::hypot(s1, s2));
+      sums.energy += 0.5 * part * (q1 * u1 + q2 * u2);
+    }
+  }
+  return sums;
+}
+
+TEST(ContinuumGap, IsThatOfSumsOverManyPoints) {
+  const Scene scene = ellipsoid_scene(14, 0.03, 0.018, 0.7);
+  const Solution solution = solve(scene);
+  const DirectSums known = direct_sums(solution, paper::kFriction, paper::kPoissonRatio);
+  const ContinuumGap found = continuum_gap(scene, solution);
+  EXPECT_NEAR(found.gap, known.gap / known.energy, found.quadrature_error);
+  EXPECT_NEAR(found.energy, known.energy, found.quadrature_error * known.energy);
+  EXPECT_LT(found.quadrature_error, 0.15 * found.gap);
+}
+
+// A program of others (3 x 3 Gauss points, shifted convolutions) has these values where the contact fills the
+// grid; the gap goes with the square of the cells' size. The contact's edge cuts other cells there.
+TEST(ContinuumGap, OfThePaperFallsWithTheSquareOfTheMesh) {
+  struct Known {
+    double moment_ratio;
+    std::array<double, 2> gap;  // on 64 and 128 cells
+  };
+  for (const auto& [moment_ratio, known] : {Known{0.5, {1.49e-3, 3.37e-4}}, Known{0.9, {4.81e-4, 1.07e-4}}}) {
+    std::array<double, 2> found{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Scene scene = paper_scene(k == 0 ? 64 : 128, moment_ratio);
+      const Solution solution = solve(scene);
+      const double filled = 2.0 * paper::kContactRadius / (solution.grid.n1 * solution.grid.h1);
+      const ContinuumGap gap = continuum_gap(scene, solution);
+      found[k] = gap.gap;
+      EXPECT_NEAR(gap.gap * filled * filled, known[k], 0.15 * known[k]);
+    }
+    EXPECT_GT(std::log2(found[0] / found[1]), 1.8);
+  }
+}
+
+/// A scene whose bound is constant in the coarse cells, on cells a third as long: its energy is closer to the
+/// continuous problem's least energy, and above it.
+double energy_on_thirds(const Scene& scene, const Solution& coarse) {
+  const Model model = make_model(scene);
+  const Grid& grid = model.grid;
+  const Grid fine{3 * grid.n1, 3 * grid.n2, grid.h1 / 3.0, grid.h2 / 3.0};
+  const ArrayXd bound = model.friction.bound(ArrayXd(coarse.pressure / model.stress_unit));
+  const ArrayXd traction = coarse.traction / model.stress_unit;
+  TangentialProblem problem;
+  problem.friction_bound.resize(fine.cells());
+  for (Index i = 0; i < fine.n1; ++i) {
+    for (Index j = 0; j < fine.n2; ++j) {
+      problem.friction_bound[i * fine.n2 + j] = bound[(i / 3) * grid.n2 + j / 3];
+    }
+  }
+  problem.moment = 9.0 * (traction * rotation_field(grid)).sum();
+  Elasticity elasticity = solver::elasticity(scene, model, Reduction(grid));
+  const TangentialSolution found = solve_by_coulomb_method(elasticity, fine, problem);
+  return 0.5 * (found.traction * found.elastic_displacement).sum() * fine.cell_area() * model.moment_unit();
+}
+
+// On the thirds the tractions are free to be finer: their energy differs from the coarse ones', with
+// displacements integrated over the cells, by less than the true error, which the gap bounds.
+TEST(ContinuumGap, BoundsTheEnergyThatFinerTractionsSave) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int k = 0; k < 6; ++k) {
+    const Index cells = 2 * static_cast<Index>(between(8, 16));
+    const double radius = between(0.005, 0.03);
+    const Scene scene = ellipsoid_scene(cells, radius * between(1, 3), radius, between(0.2, 0.95));
+    const Solution solution = solve(scene);
+    const ContinuumGap found = continuum_gap(scene, solution);
+    const double saved = 1.0 - energy_on_thirds(scene, solution) / found.energy;
+    EXPECT_LE(saved, found.gap + found.quadrature_error) << cells;
+    EXPECT_GT(saved, 0.01 * found.gap) << cells;
+  }
+}
+
+TEST(ContinuumGap, IsRefusedForHistoriesAndIsNaNForNaN) {
+  Scene scene = paper_scene(16, 0.5);
+  Solution solution = solve(scene);
+  solution.traction.setConstant(NAN);
+  EXPECT_TRUE(std::isnan(continuum_gap(scene, solution).gap));
+  scene.steps.push_back(scene.steps.front());
+  EXPECT_THROW(continuum_gap(scene, solution), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipstick::solver
