@@ -16,7 +16,7 @@ SHORT = {"green": "G", "amber": "A", "red": "R", "none": "–"}
 MARKS = re.compile(r"(?<=<!-- board.py writes this table -->\n\n).*?(?=\n<!-- end of the table -->)", re.S)
 HEAD = """# The board: programs and friction
 
-`make peers` measured this page on {measured} ({machine}): simulators by the cases of
+The programs of `make peers` measured this page on {measured} ({machine}): simulators by the cases of
 [Test your simulator](guides/test-your-simulator.md#the-cases), and contact solvers and finite-element programs by scenes.
 [board.json](board.json) has every number, verdict, named cause and explanation. G: green, A: amber, R: red, –: no answer, for the
 reason below. {changes}
