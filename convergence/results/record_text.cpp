@@ -220,11 +220,16 @@ std::string energy_text(const SolveRecord& record) {
 
 std::string continuum_text(const CertificateRecord& certificate) {
   if (!certificate.continuum) return "";
-  const auto& [gap, energy, quadrature_error] = *certificate.continuum;
+  const auto& [gap, energy, quadrature_error, low, high] = *certificate.continuum;
   if (std::isnan(gap)) return text_line("continuum", "no gap: " + gap.why_missing);
+  const std::string interval =
+      std::isnan(low + high)
+          ? ""
+          : text_line("", fmt::format("twist between {} and {} rad", number_text(low), number_text(high)));
   return text_line("continuum",
                    fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
-                               number_text(gap), number_text(quadrature_error)));
+                               number_text(gap), number_text(quadrature_error))) +
+         interval;
 }
 
 std::string certificate_text(const SolveRecord& record) {

@@ -59,6 +59,8 @@ void list_fields(auto& fields, Is<ContinuumRecord> auto& continuum) {
   fields("gap", continuum.gap);
   fields("energy", continuum.energy);
   fields("quadrature_error", continuum.quadrature_error);
+  fields("twist_low", continuum.twist_low);
+  fields("twist_high", continuum.twist_high);
 }
 
 void list_fields(auto& fields, Is<CertificateRecord> auto& certificate) {

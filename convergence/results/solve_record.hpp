@@ -111,6 +111,8 @@ struct ContinuumRecord {
   Number gap = {};
   Number energy = {};  ///< J
   Number quadrature_error = {};
+  Number twist_low = {};  ///< rad; the interval of the continuous problem's twist
+  Number twist_high = {};
 };
 
 /// See solver::Certificate.

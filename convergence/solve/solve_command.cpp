@@ -61,7 +61,7 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
   command
       .add_flag("--continuum", words.request.continuum,
                 "bound the distance from the law of friction in all of the contact, not only at the cells' "
-                "centres: certificate.continuum")
+                "centres, and the twist: certificate.continuum")
       ->excludes(command.get_option("--plan"))
       ->excludes(command.get_option("--accuracy"));
   command

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <tuple>
 
 #include "convergence/oracle/oracle.hpp"
@@ -21,6 +20,7 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/checkpoint.hpp"
+#include "convergence/solve/continuum.hpp"
 #include "convergence/solve/uncertainty.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/cache/solve_cache.hpp"
@@ -28,7 +28,6 @@
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
-#include "solver/step/continuum_gap.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -161,18 +160,6 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
     };
   }
   return solve_or_keep_steps(request.scene, options, result);
-}
-
-/// The gap of the continuous problem, or the reason why it has none.
-ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solution& solution) {
-  try {
-    const auto [gap, energy, quadrature_error] = solver::continuum_gap(scene, solution);
-    const std::string broken = "the fields are not finite";
-    return {number_or(gap, broken), number_or(energy, broken), number_or(quadrature_error, broken)};
-  } catch (const std::invalid_argument& refused) {
-    const Number missing{.why_missing = refused.what()};
-    return {missing, missing, missing};
-  }
 }
 
 SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json& result) {
