@@ -172,6 +172,7 @@ SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json
   if (!request.stresses.file.empty())
     result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);
   write_answer(request, solved, text, result);
+  if (result.contains("stresses")) text << stresses_text(result["stresses"]);
   return std::move(solved.record);
 }
 

@@ -1,5 +1,7 @@
 #include "convergence/solve/stress_files.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -61,11 +63,27 @@ Json write_stresses(const StressFiles& files, const solver::Scene& scene, const 
   const auto json = [](const solver::LargestStresses::Place& place) {
     return Json{{"value", place.value}, {"at", place.at}};
   };
-  return {{"body", upper ? "upper" : "lower"},
-          {"depths", files.depths},
-          {"von_mises", json(largest.von_mises)},
-          {"tresca", json(largest.tresca)},
-          {"tension", json(largest.tension)}};
+  Json found{{"body", upper ? "upper" : "lower"},
+             {"depths", files.depths},
+             {"von_mises", json(largest.von_mises)},
+             {"tresca", json(largest.tresca)},
+             {"tension", json(largest.tension)}};
+  if (const auto yield = (upper ? scene.upper : scene.lower).yield_stress)
+    found["yield_ratio"] = largest.von_mises.value / *yield;
+  return found;
+}
+
+std::string stresses_text(const Json& found) {
+  const Json& largest = found["von_mises"];
+  const auto metres = [&](std::size_t axis) { return number_text(largest["at"][axis].get<double>()); };
+  std::string text = text_line(
+      "stresses", fmt::format("von Mises {} Pa at most in the {} body, at x1 = {} m, x2 = {} m, depth {} m",
+                              number_text(largest["value"].get<double>()), found["body"].get<std::string>(),
+                              metres(0), metres(1), metres(2)));
+  if (found.contains("yield_ratio"))
+    text += text_line(
+        "", fmt::format("{} times the yield stress", number_text(found["yield_ratio"].get<double>())));
+  return text;
 }
 
 }  // namespace slipstick::convergence

@@ -24,4 +24,7 @@ struct StressFiles {
 /// points into the body) and von Mises' stress in all cells. Returns the largest stresses with their places.
 Json write_stresses(const StressFiles& files, const solver::Scene& scene, const solver::Solution& solution);
 
+/// The largest von Mises stress for a person.
+std::string stresses_text(const Json& found);
+
 }  // namespace slipstick::convergence

@@ -52,6 +52,14 @@ class StressFiles(ProgramTest):
         rows = np.arange(0, len(cells["x1"]), step)
         return np.abs(np.array([cells[name][rows] for name in NAMES]) - self.exact(cells, depth, rows)).max() / PEAK
 
+    def test_the_yield_stress_is_compared_with_the_largest_stress(self):
+        text = SPHERE.replace("[lower]", "[lower]\nyield_stress = 3e9", 1)
+        self.write("scene.toml", text)
+        self.run_program("solve", "scene.toml", "--stresses", "s.csv", "--depths", "0.2 mm", "--json", "r.json",
+                         says="times the yield stress")
+        found = json.loads(Path("r.json").read_text())["stresses"]
+        self.assertAlmostEqual(found["yield_ratio"], found["von_mises"]["value"] / 3e9, 14)
+
     def test_a_sphere_has_its_exact_stresses_with_order_two_below_a_cell(self):
         """Over all doublings: how the grid cuts the contact's edge changes the error of a mesh, and the order of two meshes."""
         depth = 0.4 * RADIUS
