@@ -76,7 +76,7 @@ void add_body(SettingKeys& keys, const std::string& table) {
       {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
       {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."},
       {at + "yield_stress", kNumber, "Pa", "none", kPositive,
-       "Yield stress: a warning says where the peak pressure exceeds it. It changes no number."},
+       "Yield stress: a warning says where the peak pressure exceeds it, and --stresses compares with it."},
       {at + "layer.thickness", kNumber, "m", kRequired, kPositive,
        "Thickness of the layer that is bonded to the body."},
       {at + "layer.young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus of that layer."},

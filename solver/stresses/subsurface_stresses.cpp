@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace slipstick::solver {
@@ -114,7 +115,7 @@ StressPlane SubsurfaceStresses::at(double depth) {
 /// von Mises', and the largest principal stress exceeds the mean by at most 2/3 of it.
 void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
   const auto keep = [&](Place& largest, double value, Index cell) {
-    if (value > largest.value)
+    if (!(value <= largest.value) && !std::isnan(largest.value))  // NaN is kept
       largest = {value, {grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), plane.depth}};
   };
   for (Index cell = 0; cell < grid.cells(); ++cell) {

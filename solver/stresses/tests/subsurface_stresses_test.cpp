@@ -179,6 +179,16 @@ TEST(SubsurfaceStresses, CarryTheNormalLoadThroughAPlane) {
   EXPECT_NEAR(plane.stress[k33].sum(), -3.0, 3.0 * std::pow(1.0 + 31.0 * 31.0, -1.5));
 }
 
+TEST(SubsurfaceStresses, KeepNaNAsTheLargest) {
+  const Grid grid{2, 2, 1.0, 1.0};
+  StressPlane plane{1.0, {}};
+  for (Eigen::ArrayXd& field : plane.stress) field.setOnes(4);
+  plane.stress[k33][1] = std::numeric_limits<double>::quiet_NaN();
+  LargestStresses largest;
+  largest.include(plane, grid);
+  EXPECT_TRUE(std::isnan(largest.von_mises.value));
+}
+
 TEST(SubsurfaceStresses, RefuseASurfaceAndAQuadrant) {
   SolutionFields fields = random_fields({4, 4, 1.0, 1.0});
   SubsurfaceStresses stresses(fields, 0.3, Body::lower);
