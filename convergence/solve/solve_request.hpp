@@ -44,7 +44,7 @@ struct SolveRequest {
       {};             ///< cells and tolerance are chosen for it; none: the scene has them
   bool plan = false;  ///< only predicts memory and time, of one of planned_ranks
   int planned_ranks = 1;
-  bool continuum = false;  ///< the certificate gets the gap of the continuous problem
+  bool continuum = false;                      ///< the certificate gets the gap of the continuous problem
   std::vector<UncertainInput> uncertain = {};  ///< they give the answer its uncertainty
   AnswerFiles files = {};
   StressFiles stresses = {};
