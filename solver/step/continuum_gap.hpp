@@ -11,7 +11,8 @@ namespace slipstick::solver {
 ///
 /// With the slip s(x) of the tractions q, constant in cells, the integral of q.s + f |s| is a sum of
 /// non-negative terms for any rigid motion, and bounds energy(q) - energy(q*) and |q - q*|_K^2/2, where q*
-/// solves the continuous problem: docs/theory.md.
+/// solves the continuous problem: docs/theory.md. The integral is a sum over points of the cells, so the
+/// bound holds up to `quadrature_error`, which is estimated, not proven.
 struct ContinuumGap {
   double gap;               ///< the integral over `energy`
   double energy;            ///< J, q.Kq/2 with displacements integrated over the cells

@@ -84,8 +84,8 @@ TEST(ContinuumGap, IsThatOfSumsOverManyPoints) {
   EXPECT_LT(found.quadrature_error, 0.15 * found.gap);
 }
 
-// A program of others (3 x 3 Gauss points, shifted convolutions) has these values where the contact fills the
-// grid; the gap goes with the square of the cells' size. The contact's edge cuts other cells there.
+// An independent program (3 x 3 Gauss points, shifted convolutions) has these values where the contact fills
+// the grid; the gap goes with the square of the cells' size. The contact's edge cuts other cells there.
 TEST(ContinuumGap, OfThePaperFallsWithTheSquareOfTheMesh) {
   struct Known {
     double moment_ratio;
