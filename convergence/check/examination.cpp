@@ -42,21 +42,12 @@ constexpr double kConstantCells = 0.1;
 /// One more cell on each side: a contact may cover parts of cells without reaching their centres.
 Grid padded(const Grid& grid) { return {grid.n1 + 2, grid.n2 + 2, grid.h1, grid.h2}; }
 
-Grid finer(const Grid& grid) {
-  constexpr auto parts = static_cast<double>(kChildren);
-  return {kChildren * grid.n1, kChildren * grid.n2, grid.h1 / parts, grid.h2 / parts};
-}
+Grid finer(const Grid& grid) { return solver::divided(grid, kChildren); }
 
 /// The field on fine cells of the padded grid, constant in each of the field's cells.
 ArrayXd on_fine_cells(const Grid& grid, const ArrayXd& values) {
-  const Grid fine = finer(padded(grid));
-  ArrayXd down = ArrayXd::Zero(fine.cells());
-  for (Index i = kChildren; i < fine.n1 - kChildren; ++i) {
-    for (Index j = kChildren; j < fine.n2 - kChildren; ++j) {
-      down[i * fine.n2 + j] = values[(i / kChildren - 1) * grid.n2 + j / kChildren - 1];
-    }
-  }
-  return down;
+  const Grid coarse = padded(grid);
+  return solver::spread_to(finer(coarse), coarse, resized(grid, coarse, values));
 }
 
 /// A fine field, of one or several components, at the centres of the coarse cells.

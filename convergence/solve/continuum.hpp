@@ -9,7 +9,7 @@ struct Solution;
 
 namespace slipstick::convergence {
 
-/// The gap of the continuous problem, and the interval of its twist under a moment, by up to four further
+/// The gap of the continuous problem, and the interval of its twist under a moment, by three further
 /// solves; missing numbers have the reason.
 ///
 /// The least energy J*(M) of a moment is convex, and the twist is its derivative. With

@@ -92,6 +92,21 @@ bool can_coarsen(const Grid& grid) {
   return fewest >= kMinSideCells;
 }
 
+Grid divided(const Grid& grid, Index parts) {
+  const auto count = static_cast<double>(parts);
+  return {parts * grid.n1, parts * grid.n2, grid.h1 / count, grid.h2 / count, grid.quadrant, grid.ranks};
+}
+
+Eigen::ArrayXd spread_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field) {
+  const Index parts = fine.n1 / coarse.n1;
+  const Index rows = field.size() / coarse.n2;  // of all components
+  Eigen::ArrayXd result(rows * parts * fine.n2);
+  for (Index i = 0; i < rows * parts; ++i) {
+    for (Index j = 0; j < fine.n2; ++j) result[i * fine.n2 + j] = field[(i / parts) * coarse.n2 + j / parts];
+  }
+  return result;
+}
+
 Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field) {
   const Weights along1 = overlaps(coarse.n1, fine.n1);
   const Weights along2 = overlaps(coarse.n2, fine.n2);

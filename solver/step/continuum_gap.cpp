@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "solver/contact/certificate.hpp"
+#include "solver/grid/grid_transfer.hpp"
 #include "solver/model/make_model.hpp"
 
 namespace slipstick::solver {
@@ -11,37 +12,18 @@ namespace {
 
 using Eigen::ArrayXd;
 
-constexpr Index kChildren = 3;  // of a cell along each side
-
-Grid finer(const Grid& grid) {
-  constexpr double kPart = 1.0 / static_cast<double>(kChildren);
-  return {grid.n1 * kChildren, grid.n2 * kChildren, grid.h1 * kPart,
-          grid.h2 * kPart,     grid.quadrant,       grid.ranks};
-}
-
-/// Constant in each cell.
-ArrayXd on_children(const Grid& grid, const ArrayXd& field) {
-  const Index components = field.size() / grid.cells();
-  const Grid fine = finer(grid);
-  ArrayXd result(components * fine.cells());
-  for (Index i = 0; i < components * fine.n1; ++i) {
-    for (Index j = 0; j < fine.n2; ++j) {
-      result[i * fine.n2 + j] = field[(i / kChildren) * grid.n2 + j / kChildren];
-    }
-  }
-  return result;
-}
+constexpr Index kParts = 3;  // of a cell along each side
 
 /// The integral over the contact of a field with one component, for a cell's area 1, by a rule over the
-/// children of each cell, whose centres are 1/3 of the cell apart.
-double integral(const Grid& fine, const ArrayXd& field, const std::array<double, kChildren>& weights) {
+/// parts of each cell, whose centres are 1/3 of the cell apart.
+double integral(const Grid& fine, const ArrayXd& field, const std::array<double, kParts>& weights) {
   double sum = 0.0;
   for (Index i = 0; i < fine.n1; ++i) {
     double row = 0.0;
     for (Index j = 0; j < fine.n2; ++j) {
-      row += weights[static_cast<std::size_t>(j % kChildren)] * field[i * fine.n2 + j];
+      row += weights[static_cast<std::size_t>(j % kParts)] * field[i * fine.n2 + j];
     }
-    sum += weights[static_cast<std::size_t>(i % kChildren)] * row;
+    sum += weights[static_cast<std::size_t>(i % kParts)] * row;
   }
   return sum;
 }
@@ -57,26 +39,24 @@ void require_one_step(const Scene& scene, const Solution& solution) {
 
 ContinuumGap continuum_gap(const Scene& scene, const Solution& solution) {
   require_one_step(scene, solution);
-  const Model model = make_model(scene);
+  Scene constant_cells = scene;
+  constant_cells.solver.cell_traction = CellTraction::constant;
+  constant_cells.solver.op = OperatorKind::dcfft;
+  const Model model = make_model(constant_cells);
   const Dimensionless unit = model.on_grid(solution.grid, {0.0, 0.0});
   const ArrayXd bound = unit.friction.bound(ArrayXd(solution.pressure / unit.stress_unit));
-  const ArrayXd traction = solution.traction / unit.stress_unit;
   const bool moves = solution.displacement[0] != 0.0 || solution.displacement[1] != 0.0;
   const Reduction part = moves ? Reduction(unit.grid, bound) : Reduction(unit.grid, bound, bound);
   const Grid& grid = part.grid();
-  const Grid fine = finer(grid);
-  Elasticity elasticity = solver::elasticity(scene, model, part);
+  const Grid fine = divided(grid, kParts);
+  Elasticity elasticity = solver::elasticity(constant_cells, model, part);
   elasticity.law = unit.law;
-  elasticity.kind = OperatorKind::dcfft;
   elasticity.cache = nullptr;
 
-  const ArrayXd q = on_children(grid, part.restricted(traction));
-  const ArrayXd f = on_children(grid, part.restricted(bound));
+  const ArrayXd q = spread_to(fine, grid, part.restricted(solution.traction / unit.stress_unit));
+  const ArrayXd f = spread_to(fine, grid, part.restricted(bound));
   ArrayXd u(q.size());
-  make_operator(
-      elasticity.kind, fine, tangential_kernel(), *elasticity.law,
-      {.threads = elasticity.threads, .diagonal = elasticity.diagonal, .at_edge = elasticity.at_edge})
-      ->apply(q, u);
+  elasticity.make(fine, tangential_kernel())->apply(q, u);
   ArrayXd s = u - solution.twist_angle * rotation_field(fine);
   s.head(fine.cells()) -= solution.displacement[0] / unit.length_unit;
   s.tail(fine.cells()) -= solution.displacement[1] / unit.length_unit;
@@ -85,12 +65,15 @@ ContinuumGap continuum_gap(const Scene& scene, const Solution& solution) {
   // integrates polynomials of degree 3 is 15 % too large.
   constexpr std::array kMean{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
   constexpr std::array kThirdDegree{0.375, 0.25, 0.375};
-  const double energy = 0.5 * integral(fine, dot_products(q, u), kMean);
+  const ArrayXd work = 0.5 * dot_products(q, u);
   const ArrayXd density = dot_products(q, s) + f * norms(s);
+  const double energy = integral(fine, work, kMean);
   const double gap = integral(fine, density, kMean);
   const double images = part.quadrant() ? 4.0 : 1.0;
   return {gap / energy, images * energy * grid.cell_area() * unit.moment_unit(),
-          std::abs(gap - integral(fine, density, kThirdDegree)) / energy};
+          (std::abs(gap - integral(fine, density, kThirdDegree)) +
+           std::abs(energy - integral(fine, work, kThirdDegree))) /
+              energy};
 }
 
 }  // namespace slipstick::solver

@@ -16,7 +16,7 @@ namespace slipstick::solver {
 struct ContinuumGap {
   double gap;               ///< the integral over `energy`
   double energy;            ///< J, q.Kq/2 with displacements integrated over the cells
-  double quadrature_error;  ///< of the gap, relative to `energy`: an estimate, by another rule of integration
+  double quadrature_error;  ///< of gap and energy, relative to `energy`: an estimate, by another rule
 };
 
 /// By s at 3 x 3 points of each cell: one application of the operator on a grid whose cells are a third as

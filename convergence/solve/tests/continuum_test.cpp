@@ -28,6 +28,36 @@ TEST(ContinuumInterval, HoldsTheExactTwistOfThePaper) {
   }
 }
 
+/// The interval holds the twist on cells a quarter as long, whose own error is far smaller than the interval.
+void expect_held(Scene scene, const char* name) {
+  const ContinuumRecord found = continuum_record(scene, solve(scene));
+  for (Index& cells : scene.grid.cells) cells *= 4;
+  const double twist = solve(scene).twist_angle;
+  EXPECT_LT(found.twist_low, twist) << name;
+  EXPECT_GT(found.twist_high, twist) << name;
+  EXPECT_LT(found.twist_high - found.twist_low, 0.7 * twist) << name;
+}
+
+TEST(ContinuumInterval, HoldsTheTwistOfOtherScenes) {
+  Scene ellipse = ellipsoid_scene(32, 0.04, 0.018, 0.8);
+  expect_held(ellipse, "ellipse");
+  ellipse.steps.front().force = {40.0, 20.0};
+  expect_held(ellipse, "with a force");
+  Scene tresca = paper_scene(32, 0.6);
+  tresca.contact.friction.kind = FrictionKind::tresca;
+  tresca.contact.friction.shear_strength = 1e8;
+  expect_held(tresca, "Tresca");
+}
+
+// Under an imposed displacement the force falls as the moment rises: a part of the energy's change is the
+// work of that displacement.
+TEST(ContinuumInterval, HoldsTheTwistUnderAnImposedDisplacement) {
+  Scene scene = paper_scene(64, 0.0);
+  scene.steps.front().torsion = Moment{0.8 * paper::kMomentLimit};
+  scene.steps.front().displacement = {0.4e-6, 0.0};
+  expect_held(scene, "displacement");
+}
+
 TEST(ContinuumInterval, IsMirroredWithTheMoment) {
   const Scene scene = paper_scene(32, 0.5);
   const Scene back = paper_scene(32, -0.5);
@@ -45,6 +75,11 @@ TEST(ContinuumInterval, IsMissingWithItsReason) {
   EXPECT_TRUE(std::isnan(imposed.twist_low));
   EXPECT_FALSE(imposed.twist_low.why_missing.empty());
   EXPECT_GT(imposed.gap, 0.0);
+  scene = paper_scene(16, 0.5);
+  Solution broken = solve(scene);
+  broken.traction.setConstant(NAN);
+  const ContinuumRecord none = continuum_record(scene, broken);
+  EXPECT_TRUE(std::isnan(none.gap) && std::isnan(none.twist_low) && std::isnan(none.twist_high));
 }
 
 }  // namespace

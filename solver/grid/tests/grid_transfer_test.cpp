@@ -177,5 +177,16 @@ TEST(MeansOn, OtherCellsHoldTheIntegral) {
   EXPECT_EQ(means_on({1, 1, 1.0, 1.0}, from, field, {-100.0, 100.0})[0], field[8]);
 }
 
+TEST(GridTransfer, AFieldSpreadOverPartsHasItsMeans) {
+  const Grid coarse{3, 5, 1.0, 0.5};
+  const Grid fine = divided(coarse, 3);
+  EXPECT_EQ(fine.n1, 9);
+  EXPECT_DOUBLE_EQ(9.0 * fine.cell_area(), coarse.cell_area());
+  const ArrayXd field = ArrayXd::LinSpaced(2 * coarse.cells(), 1.0, 2.0);
+  const ArrayXd spread = spread_to(fine, coarse, field);
+  EXPECT_TRUE(restrict_to(coarse, fine, spread).isApprox(field, 1e-14));
+  EXPECT_EQ(spread[4 * fine.n2 + 7], field[1 * coarse.n2 + 2]);
+}
+
 }  // namespace
 }  // namespace slipstick::solver
