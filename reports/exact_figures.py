@@ -158,7 +158,7 @@ def first_yield(report, data_dir):
         share, surface = (smallest / stress) ** 3, depth < 1e-3
         left.plot(load, share, color=colour, label=f"μ = {friction:g}")
         left.plot(load[surface], share[surface], "o", color=colour, markersize=4)
-        first = f"from {LIMIT}{plain(load[surface][0])} on" if surface.any() else "at no moment drawn"
+        first = f"from {LIMIT}{load[surface][0]:.3f} on" if surface.any() else "at no moment drawn"
         numbers.append((f"μ = {friction:g}: first yield at the surface", first))
     left.plot([], [], "o", color=style.GREY, markersize=4, label="at the surface")
     left.set(xlabel=LOAD_LABEL, ylabel="normal load at first yield,\nover that without torsion", xlim=(0, 1), ylim=(0, 1.05))

@@ -138,41 +138,65 @@ Json cycle_energy() {
   return rows;
 }
 
-/// Where the paper's sphere yields first, nu = 0.3: the largest von Mises stress over p0 against moment and
-/// friction, and maps of it without torsion and with.
-Json first_yield() {
-  using analytic::Severity;
-  constexpr double kPoisson = 0.3;
-  Json curves = Json::array();
-  for (const double friction : {0.3, 0.4, 0.5, 0.7, 1.0}) {
-    Json rows = Json::array();
-    for (const double load : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}) {
-      const TorsionState state = analytic::from_moment_ratio(load);
-      const analytic::LargestStress found = analytic::largest_stress(
-          {state, analytic::hertz_profile()}, &Severity::von_mises, friction, kPoisson, state.stick_ratio);
-      rows.push_back({{"moment_ratio", load},
-                      {"von_mises", found.value},
-                      {"radius", found.at.radius},
-                      {"depth", found.at.depth}});
-    }
-    curves.push_back({{"friction", friction}, {"rows", rows}});
-  }
-  Json maps = Json::array();
-  for (const double load : {0.0, 0.9}) {
-    const analytic::StressField field(analytic::from_moment_ratio(load), analytic::hertz_profile());
-    Json map{{"friction", 0.5}, {"moment_ratio", load}, {"spacing", 0.04}, {"von_mises", Json::array()}};
-    for (int i = 0; i <= 25; ++i) {
-      Json row = Json::array();
-      for (int j = 0; j <= 35; ++j) {
-        const analytic::BodyPoint at{0.04 * j, 0.04 * i};
-        row.push_back(
-            analytic::severity(field.by_pressure(at, kPoisson), field.by_torsion(at), 0.5).von_mises);
+constexpr double kPoisson = 0.3;  // of the sphere that yields
+
+Json yield_row(double load, double friction) {
+  const TorsionState state = analytic::from_moment_ratio(load);
+  const analytic::LargestStress found =
+      analytic::largest_stress({state, analytic::hertz_profile()}, &analytic::Severity::von_mises, friction,
+                               kPoisson, state.stick_ratio);
+  return {{"moment_ratio", load},
+          {"von_mises", found.value},
+          {"radius", found.at.radius},
+          {"depth", found.at.depth}};
+}
+
+bool at_surface(const Json& yield_row) { return yield_row["depth"] == 0.0; }
+
+/// With the load from which the place is the surface on, to 5e-4.
+Json yield_curve(double friction) {
+  Json rows = Json::array();
+  for (const double load : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}) {
+    Json row = yield_row(load, friction);
+    if (!rows.empty() && at_surface(row) && !at_surface(rows.back())) {
+      double below = rows.back()["moment_ratio"];
+      Json jump = row;
+      while (number_at(jump, "moment_ratio") - below > 5e-4) {
+        Json middle = yield_row(0.5 * (below + number_at(jump, "moment_ratio")), friction);
+        if (at_surface(middle))
+          jump = std::move(middle);
+        else
+          below = middle["moment_ratio"];
       }
-      map["von_mises"].push_back(row);
+      rows.push_back(std::move(jump));
     }
-    maps.push_back(map);
+    rows.push_back(std::move(row));
   }
-  return {{"poisson", kPoisson}, {"curves", curves}, {"maps", maps}};
+  return {{"friction", friction}, {"rows", rows}};
+}
+
+/// Von Mises' stress over radius and depth.
+Json yield_map(double load, double friction) {
+  constexpr double kSpacing = 0.04;
+  const analytic::StressField field(analytic::from_moment_ratio(load), analytic::hertz_profile());
+  Json depths = Json::array();
+  for (int i = 0; i <= 25; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j <= 35; ++j) {
+      const analytic::BodyPoint at{kSpacing * j, kSpacing * i};
+      row.push_back(
+          analytic::severity(field.by_pressure(at, kPoisson), field.by_torsion(at), friction).von_mises);
+    }
+    depths.push_back(std::move(row));
+  }
+  return {{"friction", friction}, {"moment_ratio", load}, {"spacing", kSpacing}, {"von_mises", depths}};
+}
+
+/// Where the paper's sphere yields first.
+Json first_yield() {
+  Json curves = Json::array();
+  for (const double friction : {0.3, 0.4, 0.5, 0.7, 1.0}) curves.push_back(yield_curve(friction));
+  return {{"poisson", kPoisson}, {"curves", curves}, {"maps", {yield_map(0.0, 0.5), yield_map(0.9, 0.5)}}};
 }
 
 namespace paper = analytic::paper;
