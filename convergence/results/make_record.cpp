@@ -109,11 +109,6 @@ EnergyRecord energy_of(const Solution& solution) {
 
 constexpr std::array kQuantityKeys{"twist_angle", "displacement", "moment", "force"};
 
-const char* key_of(double solver::Quantities::*number) {
-  return kQuantityKeys[static_cast<std::size_t>(std::ranges::find(solver::kQuantities, number) -
-                                                solver::kQuantities.begin())];
-}
-
 /// The warning that the number is not known well enough to be used, and the remedy.
 std::string poorly_resolved(const solver::Resolution& resolution) {
   const double mesh = resolution.mesh.*resolution.number;
@@ -150,7 +145,7 @@ ResolutionRecord resolution_of(const solver::Resolution& resolution) {
   const bool resolved = resolution.uncertainty <= solver::kPoorlyResolved;
   return {.stick_width = resolution.stick_width,
           .slip_width = resolution.slip_width,
-          .number = key_of(resolution.number),
+          .number = quantity_key(resolution.number),
           .uncertainty = known(resolution.uncertainty),
           .absolute = known(resolution.absolute),
           .mesh = known(mesh),
@@ -314,6 +309,11 @@ HistoryRecord history_of(std::vector<StepRecord> steps) {
 }
 
 }  // namespace
+
+const char* quantity_key(double solver::Quantities::*number) {
+  return kQuantityKeys[static_cast<std::size_t>(std::ranges::find(solver::kQuantities, number) -
+                                                solver::kQuantities.begin())];
+}
 
 SolveRecord make_record(const solver::Scene& scene, const Solution& solution, const OracleAnswer& exact,
                         std::vector<StepRecord> steps) {

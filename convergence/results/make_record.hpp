@@ -29,6 +29,9 @@ std::vector<std::string> doubts_about(const solver::Scene& scene, const SolveRec
 /// Whether the scene has several steps, solved or not.
 bool has_history(const solver::Scene& scene);
 
+/// Key of a number in records: twist_angle, displacement, moment or force.
+const char* quantity_key(double solver::Quantities::*number);
+
 /// Reason why slip has no direction.
 inline constexpr const char* kNoSlip = "nothing slips";
 

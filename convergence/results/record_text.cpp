@@ -218,21 +218,32 @@ std::string energy_text(const SolveRecord& record) {
                                    number_text(certificate.energy_error)));
 }
 
-std::string continuum_text(const CertificateRecord& certificate) {
+std::string continuum_text(const CertificateRecord& certificate, const Units& units) {
   if (!certificate.continuum) return "";
-  const auto& [gap, energy, quadrature_error, low, high] = *certificate.continuum;
-  if (std::isnan(gap)) return text_line("continuum", "no gap: " + gap.why_missing);
-  const std::string interval =
-      std::isnan(low + high)
-          ? ""
-          : text_line("", fmt::format("twist between {} and {} rad", number_text(low), number_text(high)));
-  return text_line("continuum",
-                   fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
-                               number_text(gap), number_text(quadrature_error))) +
-         interval;
+  const ContinuumRecord& continuum = *certificate.continuum;
+  if (std::isnan(continuum.gap)) return text_line("continuum", "no gap: " + continuum.gap.why_missing);
+  std::string text = text_line(
+      "continuum", fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
+                               number_text(continuum.gap), number_text(continuum.quadrature_error)));
+  if (!std::isnan(continuum.low + continuum.high)) {
+    const std::string si = unit_of(continuum.number);
+    text += text_line("", fmt::format("{} between {} and {} {}, under this friction bound",
+                                      continuum.number == "twist_angle" ? "twist" : continuum.number,
+                                      number_text(units.of(si, continuum.low)),
+                                      number_text(units.of(si, continuum.high)), units.word(si)));
+  }
+  if (!std::isnan(continuum.pressure_gap)) {
+    text += text_line("", fmt::format("pressure: gap/energy {} +- {}", number_text(continuum.pressure_gap),
+                                      number_text(continuum.pressure_quadrature_error)));
+  }
+  if (!std::isnan(continuum.friction_bound_error)) {
+    text += text_line("", fmt::format("its error may lower the least energy of the tractions by {}",
+                                      percent_text(continuum.friction_bound_error)));
+  }
+  return text;
 }
 
-std::string certificate_text(const SolveRecord& record) {
+std::string certificate_text(const SolveRecord& record, const Units& units) {
   const CertificateRecord& certificate = record.end.certificate;
   const solver::FrictionKind law = friction_law_of(record.end.friction.law);
   const SlipDirectionRecord& direction = record.method.slip_direction;
@@ -243,7 +254,7 @@ std::string certificate_text(const SolveRecord& record) {
                    fmt::format("gap/energy {}, moment off by {}, |q| above {} by {}",
                                number_text(certificate.gap), number_text(certificate.moment),
                                solver::bound_text(law), number_text(certificate.friction_bound))) +
-         energy_text(record) + continuum_text(certificate) +
+         energy_text(record) + continuum_text(certificate, units) +
          text_line("slip direction", direction.mean.why_missing == kNoSlip ? kNoSlip : angles);
 }
 
@@ -274,7 +285,7 @@ std::string solve_text(const SolveRecord& record, const Units& units) {
   const std::string state = title_of(record) + status_text(record) + state_text(record.end, units);
   if (record.is_exact()) return state + model_text(record.problem);
   return state + limit_text(record.end.loads.limit, units) + coupling_text(record) +
-         exact_answer_text(record.end.errors) + certificate_text(record) +
+         exact_answer_text(record.end.errors) + certificate_text(record, units) +
          resolution_text(record.end.resolution, units) + model_text(record.problem) +
          (record.history ? steps_text(*record.history, units) : "");
 }

@@ -59,8 +59,13 @@ void list_fields(auto& fields, Is<ContinuumRecord> auto& continuum) {
   fields("gap", continuum.gap);
   fields("energy", continuum.energy);
   fields("quadrature_error", continuum.quadrature_error);
-  fields("twist_low", continuum.twist_low);
-  fields("twist_high", continuum.twist_high);
+  fields.unless_empty("number", continuum.number);
+  fields("low", continuum.low);
+  fields("high", continuum.high);
+  fields("pressure_gap", continuum.pressure_gap);
+  fields("pressure_energy", continuum.pressure_energy);
+  fields("pressure_quadrature_error", continuum.pressure_quadrature_error);
+  fields("friction_bound_error", continuum.friction_bound_error);
 }
 
 void list_fields(auto& fields, Is<CertificateRecord> auto& certificate) {

@@ -106,13 +106,18 @@ struct EnergyRecord {
   std::optional<Number> dissipated_total = {};  ///< since the first step began
 };
 
-/// See solver::ContinuumGap; missing numbers have the reason.
+/// See solver::ContinuumGap and solver::PressureGap; missing numbers have the reason.
 struct ContinuumRecord {
   Number gap = {};
   Number energy = {};  ///< J
   Number quadrature_error = {};
-  Number twist_low = {};  ///< rad; the interval of the continuous problem's twist
-  Number twist_high = {};
+  std::string number = {};  ///< that the loads leave open: twist_angle, displacement, moment or force
+  Number low = {};          ///< its interval in the continuous problem
+  Number high = {};
+  Number pressure_gap = {};
+  Number pressure_energy = {};  ///< J
+  Number pressure_quadrature_error = {};
+  Number friction_bound_error = {};  ///< over energy
 };
 
 /// See solver::Certificate.

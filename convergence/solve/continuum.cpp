@@ -1,11 +1,13 @@
 #include "convergence/solve/continuum.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
-#include <variant>
 
+#include "convergence/results/make_record.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
 #include "solver/step/continuum_gap.hpp"
@@ -14,56 +16,117 @@ namespace slipstick::convergence {
 namespace {
 
 using solver::ContinuumGap;
+using solver::Quantities;
 using solver::Scene;
 using solver::Solution;
 
-/// The least energy, less the work of a displacement d that is imposed (d.F), lies between low and high, J.
-struct Energy {
-  double low;
-  double high;
+/// A load or motion that the scene imposes, and the number that it leaves open, which is the derivative of a
+/// potential V by it. V is the least energy, less the work of imposed motions; if the load is a motion
+/// itself, the negative of that. V is convex.
+class Imposed {
+ public:
+  Imposed(const Scene& scene, const Solution& solution)
+      : scene_(scene),
+        open_(solution.resolution.number),
+        turns_(open_ == &Quantities::twist || open_ == &Quantities::moment),
+        motion_(open_ == &Quantities::moment || open_ == &Quantities::force) {
+    const auto& along = motion_ ? solution.displacement : solution.force;
+    length_ = std::hypot(along[0], along[1]);
+    direction_ = {along[0] / length_, along[1] / length_};
+    if (turns_) length_ = motion_ ? solution.twist_angle : solution.moment;
+    if (turns_ && !motion_) scene_.steps.front().torsion = solver::Moment{length_};
+  }
+
+  double value() const { return length_; }
+
+  /// The scene with another value.
+  Scene at(double value) const {
+    Scene scene = scene_;
+    solver::Step& step = scene.steps.front();
+    const std::array<double, 2> along{value * direction_[0], value * direction_[1]};
+    if (turns_ && motion_)
+      step.torsion = solver::Twist{value};
+    else if (turns_)
+      step.torsion = solver::Moment{value};
+    else if (motion_)
+      step.displacement = along;
+    else
+      step.force = along;
+    return scene;
+  }
+
+  double number(const Solution& solution) const {
+    if (turns_) return motion_ ? solution.moment : solution.twist_angle;
+    const auto& vector = motion_ ? solution.force : solution.displacement;
+    return vector[0] * direction_[0] + vector[1] * direction_[1];
+  }
+
+  /// V lies between these, J.
+  std::pair<double, double> potential(const Solution& solution, const ContinuumGap& found) const {
+    const auto& [gap, energy, quadrature_error] = found;
+    double work = 0.0;
+    if (turns_ && motion_) work += solution.twist_angle * solution.moment;
+    if (scene_.steps.front().displacement)
+      work += solution.displacement[0] * solution.force[0] + solution.displacement[1] * solution.force[1];
+    const double low = energy * (1.0 - gap - quadrature_error) - work;
+    const double high = energy * (1.0 + quadrature_error) - work;
+    return motion_ ? std::pair(-high, -low) : std::pair(low, high);
+  }
+
+ private:
+  Scene scene_;
+  double Quantities::*open_;
+  bool turns_;
+  bool motion_;
+  double length_;
+  std::array<double, 2> direction_;
 };
 
-Energy energy_of(const Scene& scene, const Solution& solution, const ContinuumGap& found) {
-  const auto& [gap, energy, quadrature_error] = found;
-  double work = 0.0;
-  if (scene.steps.front().displacement) {
-    const solver::Index cells = solution.grid.cells();
-    work = solution.grid.cell_area() * (solution.displacement[0] * solution.traction.head(cells).sum() +
-                                        solution.displacement[1] * solution.traction.tail(cells).sum());
-  }
-  return {energy * (1.0 - gap - quadrature_error) - work, energy * (1.0 + quadrature_error) - work};
-}
-
-Scene under(Scene scene, double moment) {
-  scene.steps.front().torsion = solver::Moment{moment};
-  return scene;
-}
-
-/// Both ends of the twist's interval under a moment.
-std::pair<Number, Number> twist_interval(const Scene& scene, const Solution& solution,
-                                         const ContinuumGap& found) try {
-  const double moment = solution.moment;
-  const auto [at_low, at_high] = energy_of(scene, solution, found);
-  // A bound by the energy at another moment.
+/// Both ends of the interval of the number that is open.
+std::pair<Number, Number> interval(const Imposed& imposed, const Solution& solution,
+                                   const ContinuumGap& found) try {
+  const double here = imposed.value();
+  const auto [at_low, at_high] = imposed.potential(solution, found);
+  const auto cache = std::make_shared<solver::SolveCache>();
+  // A bound by the potential at another value.
   const auto slope = [&, low = at_low](double distance) -> Number {
     try {
-      const Scene there = under(scene, moment + distance);
-      const Solution other = solver::solve(there);
-      const double high = energy_of(there, other, solver::continuum_gap(there, other)).high;
-      return number_or((high - low) / distance, "the energy at the other moment is not finite");
+      const Scene there = imposed.at(here + distance);
+      const Solution other = solver::solve(there, {.cache = cache});
+      const double high = imposed.potential(other, solver::continuum_gap(there, other)).second;
+      return number_or((high - low) / distance, "the energy under the other load is not finite");
     } catch (const solver::InputError& refused) {  // gross slip
       return {.why_missing = refused.what()};
     }
   };
-  // The best distance is sqrt(2 G/J''), and J'' the change of twist over that of the moment.
+  // The best distance is sqrt(2 G/V''), and V'' the change of the number over that of the value.
   const double open = 2.0 * (at_high - at_low);
-  const double first = std::copysign(std::sqrt(open * moment / solution.twist_angle), moment);
-  const double before = solver::solve(under(scene, moment - first)).twist_angle;
-  const double distance = std::sqrt(open * first / (solution.twist_angle - before));
+  const double number = imposed.number(solution);
+  const double first = std::copysign(std::min(std::sqrt(open * here / number), std::abs(here)), here);
+  const Solution before = solver::solve(imposed.at(here - first), {.cache = cache});
+  const double distance = std::sqrt(open * first / (number - imposed.number(before)));
   return {slope(-distance), slope(distance)};
 } catch (const solver::InputError& refused) {
   const Number missing{.why_missing = refused.what()};
   return {missing, missing};
+}
+
+/// Fills the numbers of the pressure; missing ones have the reason.
+void add_pressure(ContinuumRecord& record, const Scene& scene, const Solution& solution) {
+  const std::string broken = "the fields are not finite";
+  try {
+    const solver::PressureGap found = solver::pressure_gap(scene, solution);
+    record.pressure_gap = number_or(found.gap, broken);
+    record.pressure_energy = number_or(found.energy, broken);
+    record.pressure_quadrature_error = number_or(found.quadrature_error, broken);
+    record.friction_bound_error =
+        number_or(solver::friction_bound_error(scene, solution, found) / record.energy, broken);
+  } catch (const std::invalid_argument& refused) {
+    for (Number* const number : {&record.pressure_gap, &record.pressure_energy,
+                                 &record.pressure_quadrature_error, &record.friction_bound_error}) {
+      if (std::isnan(*number)) number->why_missing = refused.what();
+    }
+  }
 }
 
 }  // namespace
@@ -73,15 +136,17 @@ ContinuumRecord continuum_record(const Scene& scene, const Solution& solution) t
   const std::string broken = "the fields are not finite";
   ContinuumRecord record{.gap = number_or(found.gap, broken),
                          .energy = number_or(found.energy, broken),
-                         .quadrature_error = number_or(found.quadrature_error, broken)};
-  const bool moment_given = !std::holds_alternative<solver::Twist>(scene.steps.front().torsion);
-  record.twist_low = record.twist_high = {.why_missing = "only for a moment that is not zero"};
-  if (!std::isfinite(found.gap) || !moment_given || solution.moment == 0.0) return record;
-  std::tie(record.twist_low, record.twist_high) = twist_interval(scene, solution, found);
+                         .quadrature_error = number_or(found.quadrature_error, broken),
+                         .number = quantity_key(solution.resolution.number)};
+  add_pressure(record, scene, solution);
+  const Imposed imposed(scene, solution);
+  record.low = record.high = {.why_missing = "only for a load or motion that is not zero"};
+  if (!std::isfinite(found.gap) || imposed.value() == 0.0) return record;
+  std::tie(record.low, record.high) = interval(imposed, solution, found);
   return record;
 } catch (const std::invalid_argument& refused) {
   const Number missing{.why_missing = refused.what()};
-  return {missing, missing, missing, missing, missing};
+  return {missing, missing, missing, "", missing, missing, missing, missing, missing, missing};
 }
 
 }  // namespace slipstick::convergence

@@ -24,4 +24,29 @@ struct ContinuumGap {
 /// by K13 and K23, and for several ranks.
 ContinuumGap continuum_gap(const Scene& scene, const Solution& solution);
 
+/// How far a pressure is from the law of contact everywhere, not only at the centres of the cells.
+///
+/// With w(x) = (Kp)(x) + h(x) - delta of the pressures p, constant in cells, the integral of p w over the
+/// places where w is positive, and half the squared dual norm of the overlap -w elsewhere, bound energy(p) -
+/// energy(p*) and |p - p*|_K^2/2, where p* solves the continuous problem of the same bodies and normal load
+/// and the energy is the integral of p (Kp/2 + h): docs/theory.md.
+struct PressureGap {
+  double gap;               ///< the bound over `energy`
+  double energy;            ///< J, p.Kp/2
+  double quadrature_error;  ///< of gap and energy, relative to `energy`: an estimate, by other rules
+  double distance;          ///< at least |p - p*|_K, J^(1/2)
+};
+
+/// By w at 3 x 3 points of each cell of the whole grid. Throws std::invalid_argument for a pressure from a
+/// file, for one that tractions change by K31 and K32, for a history and for several ranks.
+PressureGap pressure_gap(const Scene& scene, const Solution& solution);
+
+/// J: the least energy q.Kq/2 that carries the loads under the true friction bound mu p* is not smaller than
+/// the energy of this solution's tractions, less its continuum gap, less this number: mu times the pressure's
+/// distance from p* times a bound of |s| in the dual norm. Where the motions are imposed, twice it bounds the
+/// change of the energy to both sides. Valid if the true contact lies in the circle through the farthest
+/// corner of this one's cells. Throws std::invalid_argument for other laws than Coulomb's, and where bodies
+/// are coated or end.
+double friction_bound_error(const Scene& scene, const Solution& solution, const PressureGap& pressure);
+
 }  // namespace slipstick::solver

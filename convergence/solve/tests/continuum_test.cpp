@@ -19,23 +19,28 @@ TEST(ContinuumInterval, HoldsTheExactTwistOfThePaper) {
     for (const Index cells : {32, 64, 128}) {
       const Scene scene = paper_scene(cells, moment_ratio);
       const ContinuumRecord found = continuum_record(scene, solve(scene));
-      const double width = (found.twist_high - found.twist_low) / twist;
-      EXPECT_LT(found.twist_low, twist);
-      EXPECT_GT(found.twist_high, twist);
+      const double width = (found.high - found.low) / twist;
+      EXPECT_LT(found.low, twist);
+      EXPECT_GT(found.high, twist);
       EXPECT_LT(width, 0.7 * before);
       before = width;
     }
   }
 }
 
-/// The interval holds the twist on cells a quarter as long, whose own error is far smaller than the interval.
+/// The interval holds the number on cells a quarter as long, whose own error is far smaller than the
+/// interval.
 void expect_held(Scene scene, const char* name) {
   const ContinuumRecord found = continuum_record(scene, solve(scene));
   for (Index& cells : scene.grid.cells) cells *= 4;
-  const double twist = solve(scene).twist_angle;
-  EXPECT_LT(found.twist_low, twist) << name;
-  EXPECT_GT(found.twist_high, twist) << name;
-  EXPECT_LT(found.twist_high - found.twist_low, 0.7 * twist) << name;
+  const Solution fine = solve(scene);
+  const double number = found.number == "twist_angle" ? fine.twist_angle
+                        : found.number == "moment"    ? fine.moment
+                        : found.number == "force"     ? std::hypot(fine.force[0], fine.force[1])
+                                                  : std::hypot(fine.displacement[0], fine.displacement[1]);
+  EXPECT_LT(found.low, number) << name;
+  EXPECT_GT(found.high, number) << name;
+  EXPECT_LT(found.high - found.low, 0.3 * number) << name;
 }
 
 TEST(ContinuumInterval, HoldsTheTwistOfOtherScenes) {
@@ -47,6 +52,20 @@ TEST(ContinuumInterval, HoldsTheTwistOfOtherScenes) {
   tresca.contact.friction.kind = FrictionKind::tresca;
   tresca.contact.friction.shear_strength = 1e8;
   expect_held(tresca, "Tresca");
+}
+
+TEST(ContinuumInterval, HoldsTheNumberThatTheLoadsLeaveOpen) {
+  Scene scene = paper_scene(32, 0.0);
+  scene.steps.front().torsion = Twist{1e-3};
+  expect_held(scene, "moment of a twist");
+  scene.steps.front().force = {20.0, 0.0};
+  expect_held(scene, "moment of a twist, with a force");
+  scene = paper_scene(32, 0.0);
+  scene.steps.front().force = {30.0, -40.0};
+  expect_held(scene, "displacement");
+  scene.steps.front().force = {};
+  scene.steps.front().displacement = {0.2e-6, 0.1e-6};
+  expect_held(scene, "force of a displacement");
 }
 
 // Under an imposed displacement the force falls as the moment rises: a part of the energy's change is the
@@ -63,23 +82,22 @@ TEST(ContinuumInterval, IsMirroredWithTheMoment) {
   const Scene back = paper_scene(32, -0.5);
   const ContinuumRecord one = continuum_record(scene, solve(scene));
   const ContinuumRecord other = continuum_record(back, solve(back));
-  EXPECT_NEAR(other.twist_high, -one.twist_low, 1e-9 * one.twist_high);
-  EXPECT_NEAR(other.twist_low, -one.twist_high, 1e-9 * one.twist_high);
+  EXPECT_NEAR(other.high, -one.low, 1e-9 * one.high);
+  EXPECT_NEAR(other.low, -one.high, 1e-9 * one.high);
 }
 
 TEST(ContinuumInterval, IsMissingWithItsReason) {
   Scene scene = paper_scene(32, 0.9999);
-  EXPECT_TRUE(std::isnan(continuum_record(scene, solve(scene)).twist_high));
-  scene.steps.front().torsion = Twist{1e-4};
-  const ContinuumRecord imposed = continuum_record(scene, solve(scene));
-  EXPECT_TRUE(std::isnan(imposed.twist_low));
-  EXPECT_FALSE(imposed.twist_low.why_missing.empty());
-  EXPECT_GT(imposed.gap, 0.0);
+  EXPECT_TRUE(std::isnan(continuum_record(scene, solve(scene)).high));
+  scene.steps.front().torsion = Moment{0.0};
+  const ContinuumRecord free = continuum_record(scene, solve(scene));
+  EXPECT_TRUE(std::isnan(free.low));
+  EXPECT_FALSE(free.low.why_missing.empty());
   scene = paper_scene(16, 0.5);
   Solution broken = solve(scene);
   broken.traction.setConstant(NAN);
   const ContinuumRecord none = continuum_record(scene, broken);
-  EXPECT_TRUE(std::isnan(none.gap) && std::isnan(none.twist_low) && std::isnan(none.twist_high));
+  EXPECT_TRUE(std::isnan(none.gap) && std::isnan(none.low) && std::isnan(none.high));
 }
 
 }  // namespace
