@@ -1,5 +1,7 @@
 #include "convergence/solve/continuum.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -8,6 +10,7 @@
 #include <utility>
 
 #include "convergence/results/make_record.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
 #include "solver/step/continuum_gap.hpp"
@@ -84,16 +87,16 @@ class Imposed {
 
 /// Both ends of the interval of the number that is open.
 std::pair<Number, Number> interval(const Imposed& imposed, const Solution& solution,
-                                   const ContinuumGap& found) try {
+                                   const ContinuumGap& found,
+                                   const std::shared_ptr<solver::SolveCache>& cache) try {
   const double here = imposed.value();
   const auto [at_low, at_high] = imposed.potential(solution, found);
-  const auto cache = std::make_shared<solver::SolveCache>();
   // A bound by the potential at another value.
   const auto slope = [&, low = at_low](double distance) -> Number {
     try {
       const Scene there = imposed.at(here + distance);
       const Solution other = solver::solve(there, {.cache = cache});
-      const double high = imposed.potential(other, solver::continuum_gap(there, other)).second;
+      const double high = imposed.potential(other, solver::continuum_gap(there, other, cache)).second;
       return number_or((high - low) / distance, "the energy under the other load is not finite");
     } catch (const solver::InputError& refused) {  // gross slip
       return {.why_missing = refused.what()};
@@ -132,7 +135,8 @@ void add_pressure(ContinuumRecord& record, const Scene& scene, const Solution& s
 }  // namespace
 
 ContinuumRecord continuum_record(const Scene& scene, const Solution& solution) try {
-  const ContinuumGap found = solver::continuum_gap(scene, solution);
+  const auto cache = std::make_shared<solver::SolveCache>();
+  const ContinuumGap found = solver::continuum_gap(scene, solution, cache);
   const std::string broken = "the fields are not finite";
   ContinuumRecord record{.gap = number_or(found.gap, broken),
                          .energy = number_or(found.energy, broken),
@@ -142,11 +146,52 @@ ContinuumRecord continuum_record(const Scene& scene, const Solution& solution) t
   const Imposed imposed(scene, solution);
   record.low = record.high = {.why_missing = "only for a load or motion that is not zero"};
   if (!std::isfinite(found.gap) || imposed.value() == 0.0) return record;
-  std::tie(record.low, record.high) = interval(imposed, solution, found);
+  std::tie(record.low, record.high) = interval(imposed, solution, found, cache);
   return record;
 } catch (const std::invalid_argument& refused) {
   const Number missing{.why_missing = refused.what()};
   return {missing, missing, missing, "", missing, missing, missing, missing, missing, missing};
+}
+
+ProvenAnswer solve_until_proven(Scene scene, double width,
+                                const std::function<SolvedScene(const Scene&)>& solve) {
+  constexpr int kMaxAttempts = 6;
+  constexpr double kMargin = 1.2;  // the width falls with the cells' size, or a little faster
+  ProvenAnswer answer{.account = {{"wanted", width}, {"attempts", Json::array()}}};
+  std::string not_reached = fmt::format("the interval is too wide after {} meshes", kMaxAttempts);
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    try {
+      SolvedScene solved = solve(scene);
+      solved.record.end.certificate.continuum = continuum_record(scene, solved.solution);
+      answer.solved = std::move(solved);
+      answer.scene = scene;
+    } catch (const solver::InputError& refused) {
+      if (attempt == 0) throw;
+      not_reached = refused.what();
+      break;
+    }
+    const ContinuumRecord& found = *answer.solved.record.end.certificate.continuum;
+    const std::string why = found.low.why_missing + found.high.why_missing;
+    const Number reached =
+        number_or((found.high - found.low) / (0.5 * std::abs(found.high + found.low)), why);
+    Json made{{"cells", scene.grid.cells}};
+    set_number(made, "width", reached);
+    answer.account["attempts"].push_back(std::move(made));
+    answer.text += text_line("proven", fmt::format("{} x {} cells: an interval of {}", scene.grid.cells[0],
+                                                   scene.grid.cells[1], percent_text(reached)));
+    if (reached <= width) return answer;
+    if (!answer.solved.record.is_converged() || std::isnan(found.gap)) {
+      not_reached = std::isnan(found.gap) ? found.gap.why_missing : "the solve did not converge";
+      break;
+    }
+    // Where the other loads slip, they may do so on this mesh only.
+    const double finer = std::isnan(reached) ? 2.0 : std::clamp(kMargin * reached / width, 1.25, 4.0);
+    for (solver::Index& cells : scene.grid.cells)
+      cells = 2 * static_cast<solver::Index>(std::ceil(0.5 * finer * static_cast<double>(cells)));
+  }
+  answer.account["not_reached"] = not_reached;
+  answer.text += text_line("not reached", not_reached);
+  return answer;
 }
 
 }  // namespace slipstick::convergence

@@ -61,9 +61,17 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
   command
       .add_flag("--continuum", words.request.continuum,
                 "bound the distance from the law of friction in all of the contact, not only at the cells' "
-                "centres, and the twist: certificate.continuum")
+                "centres, and the number that the loads leave open: certificate.continuum")
       ->excludes(command.get_option("--plan"))
       ->excludes(command.get_option("--accuracy"));
+  CLI::Option* const proven =
+      command
+          .add_option("--proven", words.request.proven,
+                      "take more cells until the interval of --continuum is this narrow, relative to the "
+                      "number in it, e.g. 1e-2")
+          ->check(CLI::Range(1e-6, 1.0));
+  for (const char* const option : {"--plan", "--accuracy", "--uncertain"})
+    proven->excludes(command.get_option(option));
   command
       .add_option("--ranks", words.request.planned_ranks,
                   "with --plan: number of MPI ranks that share the solve; the memory is that of one rank")

@@ -162,17 +162,22 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
   return solve_or_keep_steps(request.scene, options, result);
 }
 
+/// Fills the result, and writes text and files.
+void write_solved(const SolveRequest& request, const SolvedScene& solved, std::ostream& text, Json& result) {
+  result = to_json(solved.record);
+  if (!request.stresses.file.empty())
+    result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);
+  write_answer(request, solved, text, result);
+  if (result.contains("stresses")) text << stresses_text(result["stresses"]);
+}
+
 SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json& result) {
   SolvedScene solved = request.checkpoint.file.empty()
                            ? solve_or_keep_steps(request.scene, grid_options(request), result)
                            : solve_with_checkpoint(request, result);
   if (request.continuum)
     solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
-  result = to_json(solved.record);
-  if (!request.stresses.file.empty())
-    result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);
-  write_answer(request, solved, text, result);
-  if (result.contains("stresses")) text << stresses_text(result["stresses"]);
+  write_solved(request, solved, text, result);
   return std::move(solved.record);
 }
 
@@ -206,6 +211,19 @@ int solve_to_target(const SolveRequest& request, std::ostream& text, Json& resul
   return found.reached() ? 0 : 1;
 }
 
+/// Solves on meshes until the interval of the continuous problem is narrow enough.
+int solve_to_interval(SolveRequest request, std::ostream& text, Json& result) {
+  const ProvenAnswer found =
+      solve_until_proven(request.scene, *request.proven, [&](const solver::Scene& chosen) {
+        return solve_or_keep_steps(chosen, grid_options(request), result);
+      });
+  request.scene = found.scene;
+  write_solved(request, found.solved, text, result);
+  result["proven"] = found.account;
+  text << found.text;
+  return found.account.contains("not_reached") ? 1 : 0;
+}
+
 }  // namespace
 
 bool has_step(const std::string& file) { return file.find(kStep) != std::string::npos; }
@@ -224,6 +242,7 @@ int run_request(const SolveRequest& request, std::ostream& text, Json& result) {
   }
   const bool exact = request.scene.solver.model == solver::ModelChoice::exact;
   if (request.target && !exact) return solve_to_target(request, text, result);
+  if (request.proven) return solve_to_interval(request, text, result);
   std::optional<Accuracy> accuracy;
   if (request.target) accuracy = exact_accuracy(request.scene, *request.target);
   const SolveRecord record =

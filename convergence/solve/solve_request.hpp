@@ -45,6 +45,7 @@ struct SolveRequest {
   bool plan = false;  ///< only predicts memory and time, of one of planned_ranks
   int planned_ranks = 1;
   bool continuum = false;                      ///< the certificate gets the gap of the continuous problem
+  std::optional<double> proven = {};           ///< cells are chosen for an interval of this relative width
   std::vector<UncertainInput> uncertain = {};  ///< they give the answer its uncertainty
   AnswerFiles files = {};
   StressFiles stresses = {};

@@ -7,7 +7,7 @@
 
 namespace slipstick::solver {
 
-/// A number, and how far it may be from the integral that it stands for.
+/// A sum in place of an integral, and its estimated error.
 struct Estimate {
   double value;
   double error;

@@ -100,5 +100,31 @@ TEST(ContinuumInterval, IsMissingWithItsReason) {
   EXPECT_TRUE(std::isnan(none.gap) && std::isnan(none.low) && std::isnan(none.high));
 }
 
+ProvenAnswer proven(const Scene& scene, double width) {
+  return solve_until_proven(scene, width, [](const Scene& chosen) { return solve_scene(chosen); });
+}
+
+TEST(Proven, TakesCellsUntilTheIntervalIsNarrow) {
+  const ProvenAnswer answer = proven(paper_scene(32, 0.5), 0.02);
+  const ContinuumRecord& found = *answer.solved.record.end.certificate.continuum;
+  const double twist = paper::kTwists[1].twist;
+  EXPECT_LT(found.low, twist);
+  EXPECT_GT(found.high, twist);
+  EXPECT_LT(found.high - found.low, 0.02 * twist);
+  EXPECT_FALSE(answer.account.contains("not_reached"));
+  EXPECT_GT(answer.account["attempts"].size(), 1U);
+  EXPECT_EQ(answer.account["attempts"].back()["cells"][0], answer.solved.solution.grid.n1);
+}
+
+TEST(Proven, KeepsTheLastAnswerWhereTheNextCannotBeHad) {
+  Scene scene = paper_scene(32, 0.5);
+  scene.solver.memory_limit = 40e6;
+  const ProvenAnswer answer = proven(scene, 1e-4);
+  EXPECT_TRUE(answer.account.contains("not_reached"));
+  EXPECT_GT(answer.solved.solution.twist_angle, 0.0);
+  scene.steps.push_back(scene.steps.front());
+  EXPECT_EQ(proven(scene, 1e-4).account["not_reached"], "the contact has a history of loads");
+}
+
 }  // namespace
 }  // namespace slipstick::convergence

@@ -77,7 +77,7 @@ DirectSums direct_sums(const Solution& solution, double friction, double nu) {
 
 // The slip that is left to the dual norm makes the bound smaller than the integral of q.s + f |s|.
 TEST(ContinuumGap, IsLessThanSumsOverManyPoints) {
-  for (const double moment_ratio : {0.1, 0.7}) {
+  for (const double moment_ratio : {0.3, 0.7}) {
     const Scene scene = ellipsoid_scene(14, 0.03, 0.018, moment_ratio);
     const Solution solution = solve(scene);
     const DirectSums known = direct_sums(solution, paper::kFriction, paper::kPoissonRatio);
@@ -122,7 +122,7 @@ double saved_on_quarters(const Scene& scene, const Solution& coarse) {
   return 1.0 - (found.traction * found.elastic_displacement).sum() / (traction * u).sum();
 }
 
-// What finer tractions save is a part of the error that the gap bounds.
+// Finer tractions save a part of the error that the gap bounds.
 TEST(ContinuumGap, BoundsTheEnergyThatFinerTractionsSave) {
   std::mt19937 random(7);
   const auto between = [&](double low, double high) {
