@@ -112,9 +112,21 @@ void add_stress_options(CLI::App& command, StressFiles& stresses) {
   CLI::Option* const file = command.add_option(
       "--stresses", stresses.file,
       "write the stresses below the surface at --depths, of a history after the last step: .h5, .csv or "
-      ".vti; of several depths each to its own file, where the name holds {depth}");
+      ".vti; of several depths each to its own file, where the name holds {depth}; of both bodies where it "
+      "holds {body}");
   file->needs(depths);
   depths->needs(file);
+  const auto add_coefficient = [&](const char* name, std::optional<double>& coefficient, const char* help) {
+    command.add_option(name, coefficient, help)
+        ->check(CLI::NonNegativeNumber)
+        ->needs(file)
+        ->excludes(command.get_option("--checkpoint"));
+  };
+  add_coefficient("--dang-van", stresses.fatigue.dang_van,
+                  "alpha: the largest shear amplitude + alpha times hydrostatic stress over the last cycle");
+  add_coefficient("--findley", stresses.fatigue.findley,
+                  "k: the largest shear amplitude + k times largest normal stress of a plane over the last "
+                  "cycle");
   for (const char* const option : {"--accuracy", "--plan"}) file->excludes(command.get_option(option));
 }
 
@@ -218,8 +230,10 @@ SolveRequest request_of(const CLI::App& command, SolveWords words) {
   require_scene_kept(command, request.files.fields, request.scene);
   require_output("--fields", request.files.fields);
   for (std::size_t d = 0; d < request.stresses.depths.size(); ++d) {
-    require_input_kept("--stresses", request.stresses.name(d), input_files(request.scene));
-    require_output("--stresses", request.stresses.name(d));
+    for (const solver::Body body : request.stresses.bodies(request.scene)) {
+      require_input_kept("--stresses", request.stresses.name(d, body), input_files(request.scene));
+      require_output("--stresses", request.stresses.name(d, body));
+    }
   }
   require_output("--loop", request.files.loop);
   require_output("--checkpoint", request.checkpoint.file);

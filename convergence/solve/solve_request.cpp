@@ -162,22 +162,39 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
   return solve_or_keep_steps(request.scene, options, result);
 }
 
-/// Fills the result, and writes text and files.
-void write_solved(const SolveRequest& request, const SolvedScene& solved, std::ostream& text, Json& result) {
+/// Fills the result, and writes text and files. cycle: what the stresses need of the last cycle.
+void write_solved(const SolveRequest& request, const SolvedScene& solved,
+                  const std::vector<solver::SolutionFields>& cycle, std::ostream& text, Json& result) {
   result = to_json(solved.record);
   if (!request.stresses.file.empty())
-    result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution);
+    result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution, cycle);
   write_answer(request, solved, text, result);
   if (result.contains("stresses")) text << stresses_text(result["stresses"]);
 }
 
+/// Adds pressure and tractions at the end of each step of the last cycle to `states`.
+void keep_last_cycle(SolveSceneOptions& options, int last, std::vector<solver::SolutionFields>& states) {
+  options.on_step = [&states, last, then = std::move(options.on_step)](const solver::Solution& at,
+                                                                       const OracleAnswer& exact) {
+    if (at.cycle == last) {
+      solver::SolutionFields& state = states.emplace_back();
+      state.grid = at.grid;
+      state.pressure = at.pressure;
+      state.traction = at.traction;
+    }
+    then(at, exact);
+  };
+}
+
 SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json& result) {
-  SolvedScene solved = request.checkpoint.file.empty()
-                           ? solve_or_keep_steps(request.scene, grid_options(request), result)
-                           : solve_with_checkpoint(request, result);
+  SolveSceneOptions options = grid_options(request);
+  std::vector<solver::SolutionFields> cycle;
+  if (request.stresses.fatigue.any()) keep_last_cycle(options, request.scene.cycles, cycle);
+  SolvedScene solved = request.checkpoint.file.empty() ? solve_or_keep_steps(request.scene, options, result)
+                                                       : solve_with_checkpoint(request, result);
   if (request.continuum)
     solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
-  write_solved(request, solved, text, result);
+  write_solved(request, solved, cycle, text, result);
   return std::move(solved.record);
 }
 
@@ -218,7 +235,7 @@ int solve_to_interval(SolveRequest request, std::ostream& text, Json& result) {
         return solve_or_keep_steps(chosen, grid_options(request), result);
       });
   request.scene = found.scene;
-  write_solved(request, found.solved, text, result);
+  write_solved(request, found.solved, {}, text, result);
   result["proven"] = found.account;
   text << found.text;
   return found.account.contains("not_reached") ? 1 : 0;

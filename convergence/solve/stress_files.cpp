@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "convergence/results/make_record.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/units.hpp"
@@ -14,12 +15,30 @@ namespace slipstick::convergence {
 
 using solver::InputError;
 
-constexpr std::string_view kDepthNumber = "{depth}";
+namespace {
 
-std::string StressFiles::name(std::size_t depth) const {
-  std::string name = file;
-  const auto at = name.find(kDepthNumber);
-  return at == std::string::npos ? name : name.replace(at, kDepthNumber.size(), std::to_string(depth + 1));
+constexpr std::string_view kDepthNumber = "{depth}", kBody = "{body}";
+
+const char* word(solver::Body body) { return body == solver::Body::upper ? "upper" : "lower"; }
+
+/// The name with its mark, if it has one, replaced by a word.
+std::string with(std::string name, std::string_view mark, const std::string& word) {
+  const auto at = name.find(mark);
+  return at == std::string::npos ? name : name.replace(at, mark.size(), word);
+}
+
+}  // namespace
+
+std::string StressFiles::name(std::size_t depth, solver::Body body) const {
+  return with(with(file, kDepthNumber, std::to_string(depth + 1)), kBody, word(body));
+}
+
+std::vector<solver::Body> StressFiles::bodies(const solver::Scene& scene) const {
+  std::vector<solver::Body> elastic;
+  if (!std::isinf(scene.lower.young_modulus)) elastic.push_back(solver::Body::lower);
+  if (!std::isinf(scene.upper.young_modulus)) elastic.push_back(solver::Body::upper);
+  if (file.find(kBody) == std::string::npos) elastic.resize(1);
+  return elastic;
 }
 
 void StressFiles::read_depths(const solver::Scene& scene) {
@@ -40,16 +59,57 @@ void StressFiles::read_depths(const solver::Scene& scene) {
     throw InputError(scene.source.string(),
                      "has a layer; allowed with --stresses: half-spaces without a layer between or on them");
   }
+  if (fatigue.any() && !has_history(scene)) {
+    throw InputError(fatigue.findley ? "--findley" : "--dang-van",
+                     "allowed: a scene with a history of loads: steps, or cycles");
+  }
   if (scene.solver.model == solver::ModelChoice::exact)
     throw InputError("--stresses " + file,
                      "allowed: a solve on a grid; slipstick exact --at has exact stresses");
 }
 
-Json write_stresses(const StressFiles& files, const solver::Scene& scene, const solver::Solution& solution) {
-  const bool upper = std::isinf(scene.lower.young_modulus);
+namespace {
+
+Json place(double value, const std::array<double, 3>& at) { return {{"value", value}, {"at", at}}; }
+
+/// The largest parameters over the states of a cycle, at all depths.
+Json fatigue(solver::SubsurfaceStresses& stresses, const StressFiles& files,
+             const std::vector<solver::SolutionFields>& cycle) {
+  const auto& asked = files.fatigue;
+  solver::LargestFatigue largest;
+  std::vector<solver::StressPlane> states(cycle.size());
+  for (const double depth : files.depths) {
+    for (std::size_t i = 0; i < cycle.size(); ++i) {
+      stresses.act(cycle[i]);
+      states[i] = stresses.at(depth);
+    }
+    largest.include(states, asked, cycle[0].grid);
+  }
+  const auto shear = [](const auto& largest) {
+    Json json = place(largest.found.value, largest.at);
+    json.update({{"shear", largest.found.shear},
+                 {"hydrostatic_mean", largest.found.hydrostatic_mean},
+                 {"hydrostatic_largest", largest.found.hydrostatic_largest}});
+    return json;
+  };
+  Json json{{"states", cycle.size()}, {"shear", shear(largest.shear)}};
+  if (asked.dang_van) json["dang_van"] = shear(largest.dang_van);
+  if (asked.dang_van) json["dang_van"]["alpha"] = *asked.dang_van;
+  if (!asked.findley) return json;
+  const auto& [found, at] = largest.findley;
+  json["findley"] = place(found.value, at);
+  json["findley"].update({{"shear", found.shear},
+                          {"normal_stress", found.normal_stress},
+                          {"normal", found.normal},
+                          {"k", *asked.findley}});
+  return json;
+}
+
+Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scene& scene,
+                 const solver::Solution& solution, const std::vector<solver::SolutionFields>& cycle) {
   const solver::Grid& grid = solution.grid;
-  solver::SubsurfaceStresses stresses(solution, (upper ? scene.upper : scene.lower).poisson_ratio,
-                                      upper ? solver::Body::upper : solver::Body::lower, solution.threads);
+  const auto& material = body == solver::Body::upper ? scene.upper : scene.lower;
+  solver::SubsurfaceStresses stresses(solution, material.poisson_ratio, body, solution.threads);
   solver::LargestStresses largest;
   for (std::size_t d = 0; d < files.depths.size(); ++d) {
     const solver::StressPlane plane = stresses.at(files.depths[d]);
@@ -58,31 +118,51 @@ Json write_stresses(const StressFiles& files, const solver::Scene& scene, const 
     constexpr std::array kNames{"s11", "s22", "s33", "s12", "s13", "s23"};
     for (std::size_t a = 0; a < kNames.size(); ++a) columns.push_back({kNames[a], plane.stress[a]});
     columns.push_back({"von_mises", solver::von_mises(plane.stress)});
-    solver::write_fields(files.name(d), grid, columns, Eigen::ArrayXd::Ones(grid.cells()));
+    solver::write_fields(files.name(d, body), grid, columns, Eigen::ArrayXd::Ones(grid.cells()));
   }
-  const auto json = [](const solver::LargestStresses::Place& place) {
-    return Json{{"value", place.value}, {"at", place.at}};
-  };
-  Json found{{"body", upper ? "upper" : "lower"},
+  const auto json = [](const auto& largest) { return place(largest.value, largest.at); };
+  Json found{{"body", word(body)},
              {"depths", files.depths},
              {"von_mises", json(largest.von_mises)},
              {"tresca", json(largest.tresca)},
              {"tension", json(largest.tension)}};
-  if (const auto yield = (upper ? scene.upper : scene.lower).yield_stress)
-    found["yield_ratio"] = largest.von_mises.value / *yield;
+  if (const auto yield = material.yield_stress) found["yield_ratio"] = largest.von_mises.value / *yield;
+  if (!files.fatigue.any()) return found;
+  if (cycle.size() == scene.steps.size()) {
+    found["fatigue"] = fatigue(stresses, files, cycle);
+  } else {
+    set_missing(found, "fatigue", "the states of the last cycle are not all known");
+  }
+  return found;
+}
+
+}  // namespace
+
+Json write_stresses(const StressFiles& files, const solver::Scene& scene, const solver::Solution& solution,
+                    const std::vector<solver::SolutionFields>& cycle) {
+  const std::vector<solver::Body> bodies = files.bodies(scene);
+  Json found = stresses_of(bodies.front(), files, scene, solution, cycle);
+  if (bodies.size() > 1) found["upper"] = stresses_of(bodies.back(), files, scene, solution, cycle);
   return found;
 }
 
 std::string stresses_text(const Json& found) {
-  const Json& largest = found["von_mises"];
-  const auto metres = [&](std::size_t axis) { return number_text(largest["at"][axis].get<double>()); };
-  std::string text = text_line(
-      "stresses", fmt::format("von Mises {} Pa at most in the {} body, at x1 = {} m, x2 = {} m, depth {} m",
-                              number_text(largest["value"].get<double>()), found["body"].get<std::string>(),
-                              metres(0), metres(1), metres(2)));
+  const auto line = [](const char* label, const std::string& name, const Json& largest) {
+    const auto metres = [&](std::size_t axis) { return number_text(largest["at"][axis].get<double>()); };
+    return text_line(
+        label, fmt::format("{} {} Pa at most, at x1 = {} m, x2 = {} m, depth {} m", name,
+                           number_text(largest["value"].get<double>()), metres(0), metres(1), metres(2)));
+  };
+  std::string text = line("stresses", fmt::format("{} body: von Mises", found["body"].get<std::string>()),
+                          found["von_mises"]);
   if (found.contains("yield_ratio"))
     text += text_line(
         "", fmt::format("{} times the yield stress", number_text(found["yield_ratio"].get<double>())));
+  const Json none, &fatigue = found.contains("fatigue") ? found["fatigue"] : none;
+  for (const auto& [key, name] :
+       {std::pair("shear", "shear amplitude"), {"dang_van", "Dang Van"}, {"findley", "Findley"}})
+    if (fatigue.contains(key)) text += line("", name, fatigue[key]);
+  if (found.contains("upper")) text += stresses_text(found["upper"]);
   return text;
 }
 

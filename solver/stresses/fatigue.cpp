@@ -9,6 +9,8 @@
 namespace slipstick::solver {
 namespace {
 
+constexpr double kPlaneError = 1e-5;
+
 using Flat = Eigen::Matrix<double, 9, 1>;
 
 Tensor deviator(const Tensor& stress) { return stress - stress.trace() / 3.0 * Tensor::Identity(); }
@@ -37,18 +39,25 @@ Bounds bounds(std::span<const Tensor> states) {
   return most;
 }
 
-Findley on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal,
-                 std::vector<Eigen::Vector3d>& shears) {
+/// Empty where the plane has no more than `above`.
+std::optional<Findley> on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal,
+                                double above, std::vector<Eigen::Vector3d>& shears) {
   double largest = -std::numeric_limits<double>::infinity();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   shears.clear();
   for (const Tensor& stress : states) {
     const Eigen::Vector3d traction = stress * normal;
     const double across = traction.dot(normal);
     largest = std::max(across, largest);
     shears.push_back(traction - across * normal);
+    sum += shears.back();
   }
+  double most = 0.0;  // about the mean: at least the smallest
+  for (const Eigen::Vector3d& shear : shears)
+    most = std::max((shear - sum / static_cast<double>(shears.size())).norm(), most);
+  if (most + k * largest <= above) return {};
   const double amplitude = SmallestBall<3>(shears).radius();
-  return {amplitude + k * largest, amplitude, largest, {normal[0], normal[1], normal[2]}};
+  return Findley{amplitude + k * largest, amplitude, largest, {normal[0], normal[1], normal[2]}};
 }
 
 /// Planes whose normals pass through a square of a cube's face.
@@ -92,31 +101,30 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
 /// every other plane. Along a great circle it is the norm of a vector whose second derivative is at most 4 T,
 /// and the normal stress's is at most 4 S; the first derivative of the sum vanishes at the best plane.
 std::optional<Findley> findley(std::span<const Tensor> states, double k, double above) {
-  const Bounds most = bounds(states);
-  const double scale = most.amplitude + k * most.shear;
+  const Bounds bound = bounds(states);
+  const double scale = bound.amplitude + k * bound.shear;
   std::optional<Findley> best;
   std::vector<Eigen::Vector3d> shears;
   std::vector<Patch> patches{{0, 0.0, 0.0}, {1, 0.0, 0.0}, {2, 0.0, 0.0}};
   for (double half = 1.0; !patches.empty(); half *= 0.5) {
-    std::vector<double> values;
-    for (const Patch& patch : patches) {
-      const Findley found = on_plane(states, k, patch.middle(), shears);
-      values.push_back(found.value);
-      if (found.value > above) {
-        best = found;
-        above = found.value;
-      }
-    }
     const double error = 4.0 * half * half * scale;  // the angle is at most sqrt(2) half
-    if (error <= 1e-6 * scale) break;
-    std::vector<Patch> finer;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (!(values[i] + error > above)) continue;
+    std::vector<std::pair<Patch, double>> left;
+    for (const Patch& patch : patches) {
+      const auto found = on_plane(states, k, patch.middle(), above - error, shears);
+      if (!found) continue;
+      left.emplace_back(patch, found->value + error);
+      if (!(found->value > above)) continue;
+      best = found;
+      above = found->value;
+    }
+    if (error <= kPlaneError * scale) break;
+    patches.clear();
+    for (const auto& [patch, most] : left) {
+      if (!(most > above)) continue;
       for (const double u : {-0.5 * half, 0.5 * half})
         for (const double v : {-0.5 * half, 0.5 * half})
-          finer.push_back({patches[i].axis, patches[i].u + u, patches[i].v + v});
+          patches.push_back({patch.axis, patch.u + u, patch.v + v});
     }
-    patches = std::move(finer);
   }
   return best;
 }

@@ -36,11 +36,11 @@ struct Findley {
 };
 /// Findley (1959), "A theory for the effect of mean stress on fatigue of metals under combined torsion and
 /// axial load or bending". k >= 0. The search over planes by bisection leaves out only planes that cannot
-/// have more: the error is at most 1e-6 of the largest shear amplitude plus k times the largest shear stress.
+/// have more: the error is at most 1e-5 of the largest shear amplitude plus k times the largest shear stress.
 /// Empty where no plane has more than `above`.
 std::optional<Findley> findley(std::span<const Tensor> states, double k, double above);
 
-/// Coefficients of the parameters that are asked for.
+/// Coefficients of the parameters to compute; none: not computed.
 struct FatigueCoefficients {
   std::optional<double> dang_van;  ///< alpha
   std::optional<double> findley;   ///< k

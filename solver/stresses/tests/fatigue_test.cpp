@@ -65,10 +65,10 @@ TEST(Fatigue, ARepeatedStateHasNoAmplitude) {
   EXPECT_NEAR(found.shear, 0.0, 1e-14);
   EXPECT_NEAR(found.value, 0.3 * hydrostatic, 1e-14);
   const Eigen::Vector3d principal = state.selfadjointView<Eigen::Lower>().eigenvalues();
-  EXPECT_NEAR(findley(states, 0.25, kNone)->value, 0.25 * principal[2], 1e-6);
+  EXPECT_NEAR(findley(states, 0.25, kNone)->value, 0.25 * principal[2], 2e-5);
 }
 
-/// The amplitude of m + c A with c from -1 to 1 is that of A.
+/// m + c A with c from -1 to 1 has the amplitude A.
 TEST(Fatigue, ProportionalLoadingHasTheAmplitudeOfItsRange) {
   std::mt19937_64 random(3);
   for (int trial = 0; trial < 20; ++trial) {
@@ -82,7 +82,7 @@ TEST(Fatigue, ProportionalLoadingHasTheAmplitudeOfItsRange) {
   }
 }
 
-/// Shear stress of constant size that turns in a plane: amplitude sqrt(...) of each state about zero.
+/// On any number of states, with a constant stress added.
 TEST(Fatigue, AShearStressThatTurnsHasItsSizeAsAmplitude) {
   std::mt19937_64 random(4);
   for (const int states : {3, 4, 7, 30}) {
@@ -96,7 +96,7 @@ TEST(Fatigue, AShearStressThatTurnsHasItsSizeAsAmplitude) {
       cycle.emplace_back(constant + turned * shear * turned.transpose());
     }
     EXPECT_NEAR(dang_van(cycle, 0.0).value, 2.5, 1e-9) << states;
-    EXPECT_NEAR(findley(cycle, 0.0, kNone)->value, 2.5, 3e-6) << states;
+    EXPECT_NEAR(findley(cycle, 0.0, kNone)->value, 2.5, 3e-5) << states;
   }
 }
 
@@ -113,7 +113,7 @@ TEST(Fatigue, FindleyHasTheClosedFormsOfAxialLoadingAndTorsion) {
       const double most = mean + amplitude;
       const auto found =
           findley(std::vector<Tensor>{(mean - amplitude) * axial, most * axial}, k, kNone).value();
-      EXPECT_NEAR(found.value, 0.5 * (k * most + std::hypot(amplitude, k * most)), 2e-6);
+      EXPECT_NEAR(found.value, 0.5 * (k * most + std::hypot(amplitude, k * most)), 2e-5);
       EXPECT_NEAR(found.shear + k * found.normal_stress, found.value, 1e-14);
       const double cosine = turned.col(0).dot(Eigen::Vector3d(found.normal.data()));
       EXPECT_NEAR(cosine * cosine, 0.5 * (1.0 + k * most / std::hypot(amplitude, k * most)), 2e-3);
@@ -122,7 +122,7 @@ TEST(Fatigue, FindleyHasTheClosedFormsOfAxialLoadingAndTorsion) {
     const Tensor half = turned.col(0) * turned.col(1).transpose();
     const Tensor torsion = amplitude * (half + half.transpose());
     EXPECT_NEAR(findley(std::vector<Tensor>{torsion, -torsion}, k, kNone)->value,
-                amplitude * std::sqrt(1.0 + k * k), 3e-6);
+                amplitude * std::sqrt(1.0 + k * k), 3e-5);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(Fatigue, DoesNotDependOnTheAxes) {
       turned.emplace_back(turn * states.back() * turn.transpose());
     }
     EXPECT_NEAR(dang_van(states, 0.3).value, dang_van(turned, 0.3).value, 1e-9);
-    EXPECT_NEAR(findley(states, 0.3, kNone)->value, findley(turned, 0.3, kNone)->value, 5e-6);
+    EXPECT_NEAR(findley(states, 0.3, kNone)->value, findley(turned, 0.3, kNone)->value, 5e-5);
   }
 }
 
@@ -164,7 +164,7 @@ TEST(LargestFatigue, IsThatOfAllCells) {
   }
   EXPECT_DOUBLE_EQ(largest.shear.found.value, shear);
   EXPECT_DOUBLE_EQ(largest.dang_van.found.value, hydrostatic);
-  EXPECT_NEAR(largest.findley.found.value, normal, 3e-6);
+  EXPECT_NEAR(largest.findley.found.value, normal, 3e-5);
   states[1].stress[k12][3] = std::numeric_limits<double>::quiet_NaN();
   largest.include(states, {.dang_van = 0.3, .findley = 0.25}, grid);
   for (const double value :

@@ -1,0 +1,81 @@
+"""stress_cycle_test.py PROGRAM: parameters of fatigue over the last cycle of a history, and stresses of both bodies."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+from program_run import SCENES, SHORT_SCENE, ProgramTest
+
+NAMES = ("s11", "s22", "s33", "s12", "s13", "s23")
+RADIUS, PEAK, FRICTION = 0.48909732465087485e-3, 1995.9553043899548e6, 0.1  # Hertz
+DEPTH = 0.6 * RADIUS
+
+
+def loop(*moments):
+    steps = "".join(f"[[step]]\nmoment_ratio = {moment}\n" for moment in moments)
+    return "cycles = 2\n" + SHORT_SCENE.replace("moment_ratio = 0.5\n", "").replace("[grid]", steps + "[grid]")
+
+
+class StressCycle(ProgramTest):
+    def solved(self, text, *options, file="s.csv", depth=DEPTH, **expected):
+        self.write("scene.toml", text)
+        said = self.run_program("solve", "scene.toml", "--quiet", "--json", "r.json", "--stresses", file, "--depths", repr(depth), *options,
+                                **expected)
+        return said if expected else json.loads(Path("r.json").read_text())["stresses"]
+
+    def exact(self, at):
+        """Stresses by pressure and torsion over p0, at 0.8 of the limit moment."""
+        radius = math.hypot(*at[:2])
+        self.run_program("exact", "--moment-ratio", "0.8", "--friction", str(FRICTION), "--poisson", "0.3", "--at",
+                         f"{radius / RADIUS:.17g},{at[2] / RADIUS:.17g}", "--json", "e.json", "--quiet")
+        return json.loads(Path("e.json").read_text())["stresses"][0]
+
+    def test_a_moment_that_alternates_has_the_shear_stress_of_its_torsion_as_amplitude(self):
+        """By Masing's rule both states have the tractions of first loading, with opposite signs; torsion has no hydrostatic part."""
+        found = self.solved(loop(0.8, -0.8), "--dang-van", "0.3", "--findley", "0.2", "--set", "grid.cells=[128,128]")["fatigue"]
+        self.assertEqual(found["states"], 2)
+        for key in ("shear", "dang_van"):
+            exact = self.exact(found[key]["at"])
+            shear = PEAK * FRICTION * math.hypot(exact["sigma_rt"], exact["sigma_tz"])
+            hydrostatic = PEAK * (exact["sigma_rr"] + exact["sigma_tt"] + exact["sigma_zz"]) / 3
+            self.assertLess(abs(found[key]["shear"] / shear - 1), 2e-3, key)
+            for name in ("hydrostatic_mean", "hydrostatic_largest"):
+                self.assertLess(abs(found[key][name] - hydrostatic), 1e-3 * PEAK, key)
+        value, findley = found["dang_van"], found["findley"]
+        self.assertAlmostEqual(value["value"], value["shear"] + 0.3 * value["hydrostatic_largest"], delta=1e-6 * PEAK)
+        self.assertAlmostEqual(findley["value"], findley["shear"] + 0.2 * findley["normal_stress"], delta=1e-9 * PEAK)
+        self.assertAlmostEqual(np.linalg.norm(findley["normal"]), 1, 12)
+
+    def test_a_repeated_state_has_no_amplitude(self):
+        found = self.solved(loop(0.5, 0.5), "--dang-van", "0")["fatigue"]
+        self.assertLess(found["shear"]["value"], 1e-7 * PEAK)
+        self.assertNotIn("findley", found)
+
+    def test_turned_over_the_lower_body_is_the_upper_one(self):
+        """About x1 by 180 degrees: x2 and x3 change their signs, and the force on the other body is the opposite one."""
+        text = (SCENES / "dissimilar.toml").read_text().replace("moment_ratio = 0.5", "moment_ratio = 0.4\nforce = [60, 0]")
+        lower = text.replace("cells = [128, 128]", "cells = [32, 32]\nextent = [1.3e-3, 1.3e-3]")
+        upper = lower.replace("210e9", "E").replace("70e9", "210e9").replace("E ", "70e9 ").replace("[60,", "[-60,")
+        upper = upper.replace("poisson_ratio = 0.33", "poisson_ratio = 0.30").replace("poisson_ratio = 0.3\n", "poisson_ratio = 0.33\n", 1)
+        stresses = []
+        for case in (lower, upper):
+            result = self.solved(case, file="{body}.csv")
+            self.assertEqual((result["body"], result["upper"]["body"]), ("lower", "upper"))
+            self.assertNotEqual(result["von_mises"]["value"], result["upper"]["von_mises"]["value"])
+            stresses.append({})
+            for body in ("lower", "upper"):
+                with open(f"{body}.csv") as stream:
+                    rows = list(csv.DictReader(stream))
+                stresses[-1][body] = np.array([[float(row[name]) for row in rows] for name in NAMES]).reshape(6, 32, 32)
+        for one, other in (("lower", "upper"), ("upper", "lower")):
+            turned = stresses[1][other][:, :, ::-1] * np.array([1, 1, 1, -1, 1, -1])[:, None, None]
+            np.testing.assert_allclose(stresses[0][one], turned, rtol=0, atol=1e-6 * np.abs(turned).max())
+
+    def test_bad_input_is_refused(self):
+        for option in ("--dang-van", "--findley"):
+            self.assertIn(f"{option}: allowed: a scene with a history", self.solved(SHORT_SCENE, option, "0.3", code=2))
+            self.assertIn("-1", self.solved(loop(0.5, -0.5), option, "-1", code=2))
+            self.assertIn("--checkpoint", self.solved(loop(0.5, -0.5), option, "0.3", "--checkpoint", "c.h5", code=2))
