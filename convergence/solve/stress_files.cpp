@@ -70,8 +70,6 @@ void StressFiles::read_depths(const solver::Scene& scene) {
 
 namespace {
 
-Json place(double value, const std::array<double, 3>& at) { return {{"value", value}, {"at", at}}; }
-
 /// The largest parameters over the states of a cycle, at all depths.
 Json fatigue(solver::SubsurfaceStresses& stresses, const StressFiles& files,
              const std::vector<solver::SolutionFields>& cycle) {
@@ -85,23 +83,18 @@ Json fatigue(solver::SubsurfaceStresses& stresses, const StressFiles& files,
     }
     largest.include(states, asked, cycle[0].grid);
   }
-  const auto shear = [](const auto& largest) {
-    Json json = place(largest.found.value, largest.at);
-    json.update({{"shear", largest.found.shear},
-                 {"hydrostatic_mean", largest.found.hydrostatic_mean},
-                 {"hydrostatic_largest", largest.found.hydrostatic_largest}});
-    return json;
-  };
-  Json json{{"states", cycle.size()}, {"shear", shear(largest.shear)}};
-  if (asked.dang_van) json["dang_van"] = shear(largest.dang_van);
-  if (asked.dang_van) json["dang_van"]["alpha"] = *asked.dang_van;
-  if (!asked.findley) return json;
-  const auto& [found, at] = largest.findley;
-  json["findley"] = place(found.value, at);
-  json["findley"].update({{"shear", found.shear},
-                          {"normal_stress", found.normal_stress},
-                          {"normal", found.normal},
-                          {"k", *asked.findley}});
+  Json json{{"states", cycle.size()}};
+  if (const auto& [value, shear, mean, most] = largest.dang_van; asked.dang_van)
+    json["dang_van"] = {{"alpha", *asked.dang_van},  {"value", value},
+                        {"at", largest.dang_van_at}, {"shear", shear},
+                        {"hydrostatic_mean", mean},  {"hydrostatic_largest", most}};
+  if (const auto& [value, shear, normal_stress, normal] = largest.findley; asked.findley)
+    json["findley"] = {{"k", *asked.findley},
+                       {"value", value},
+                       {"at", largest.findley_at},
+                       {"shear", shear},
+                       {"normal_stress", normal_stress},
+                       {"normal", normal}};
   return json;
 }
 
@@ -120,7 +113,9 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
     columns.push_back({"von_mises", solver::von_mises(plane.stress)});
     solver::write_fields(files.name(d, body), grid, columns, Eigen::ArrayXd::Ones(grid.cells()));
   }
-  const auto json = [](const auto& largest) { return place(largest.value, largest.at); };
+  const auto json = [](const solver::LargestStresses::Place& place) {
+    return Json{{"value", place.value}, {"at", place.at}};
+  };
   Json found{{"body", word(body)},
              {"depths", files.depths},
              {"von_mises", json(largest.von_mises)},
@@ -159,8 +154,7 @@ std::string stresses_text(const Json& found) {
     text += text_line(
         "", fmt::format("{} times the yield stress", number_text(found["yield_ratio"].get<double>())));
   const Json none, &fatigue = found.contains("fatigue") ? found["fatigue"] : none;
-  for (const auto& [key, name] :
-       {std::pair("shear", "shear amplitude"), {"dang_van", "Dang Van"}, {"findley", "Findley"}})
+  for (const auto& [key, name] : {std::pair("dang_van", "Dang Van"), {"findley", "Findley"}})
     if (fatigue.contains(key)) text += line("", name, fatigue[key]);
   if (found.contains("upper")) text += stresses_text(found["upper"]);
   return text;

@@ -1,24 +1,68 @@
 #include "solver/stresses/fatigue.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-
-#include "solver/stresses/smallest_ball.hpp"
+#include <vector>
 
 namespace slipstick::solver {
 namespace {
 
 constexpr double kPlaneError = 1e-5;
 
-using Flat = Eigen::Matrix<double, 9, 1>;
+template <int D>
+using Points = std::vector<Eigen::Matrix<double, D, 1>>;
+
+/// Centre and radius of the smallest ball that holds all points: the convex combination of them with the
+/// largest deviation, by an active set. The points lie within the radius up to a relative rounding of 1e-10.
+template <int D>
+std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& points) {
+  Points<D> active{points.front()};
+  std::vector<double> weights{1.0};
+  auto center = points.front();
+  for (std::size_t round = 1;; ++round) {
+    const auto distance = [&](const auto& point) { return (point - center).squaredNorm(); };
+    const auto farthest = std::ranges::max(points, {}, distance);
+    const double square = distance(active.front());
+    const bool stops = active.size() > D + 1 || round > 10 * points.size();  // by rounding
+    if (stops || !(distance(farthest) > (1.0 + 1e-10) * square))
+      return {center, std::sqrt(distance(farthest))};
+    active.push_back(farthest);
+    weights.push_back(0.0);
+    for (bool drops = true; drops;) {  // to the sphere through all active points, or to a weight of zero
+      const auto sides = static_cast<Eigen::Index>(active.size()) - 1;
+      Eigen::Matrix<double, D, Eigen::Dynamic, 0, D, D + 1> side(D, sides);
+      for (Eigen::Index i = 0; i < sides; ++i) side.col(i) = active[count(i) + 1] - active[0];
+      auto squares = (side.transpose() * side).eval();
+      const auto half = (0.5 * squares.diagonal()).eval();
+      squares.diagonal().array() += 1e-14 * squares.trace();  // points of a plane: finite weights
+      const auto others = squares.ldlt().solve(half).eval();
+      std::vector<double> to(others.begin(), others.end());
+      to.insert(to.begin(), 1.0 - others.sum());
+      double part = 1.0;
+      std::size_t last = to.size();
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        if (to[i] >= 0.0 || weights[i] > part * (weights[i] - to[i])) continue;
+        part = weights[i] / (weights[i] - to[i]);
+        last = i;
+      }
+      for (std::size_t i = 0; i < to.size(); ++i) weights[i] += part * (to[i] - weights[i]);
+      drops = last < to.size();
+      if (!drops) continue;
+      active.erase(active.begin() + static_cast<std::ptrdiff_t>(last));
+      weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(last));
+    }
+    center.setZero();
+    for (std::size_t i = 0; i < active.size(); ++i) center += weights[i] * active[i];
+  }
+}
 
 Tensor deviator(const Tensor& stress) { return stress - stress.trace() / 3.0 * Tensor::Identity(); }
 
-/// Upper bounds of a cycle, from norms only: the shear stress of a deviator is at most its norm over
-/// sqrt(2), its largest principal value sqrt(2/3) of its norm.
+/// Upper bounds of a cycle, from norms only: the shear stress of a deviator is at most its norm over sqrt(2),
+/// its largest principal value sqrt(2/3) of its norm.
 struct Bounds {
-  double amplitude = 0.0;  ///< of the shear stress on any plane
+  double amplitude = 0.0;  ///< of the shear stress on any plane; NaN where a stress is
   double shear = 0.0;
   double hydrostatic = -std::numeric_limits<double>::infinity();
   double normal = -std::numeric_limits<double>::infinity();  ///< stress on any plane
@@ -39,47 +83,41 @@ Bounds bounds(std::span<const Tensor> states) {
   return most;
 }
 
-/// Empty where the plane has no more than `above`.
-std::optional<Findley> on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal,
-                                double above, std::vector<Eigen::Vector3d>& shears) {
-  double largest = -std::numeric_limits<double>::infinity();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  shears.clear();
+Findley on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal, double above) {
+  Points<3> shears;
+  Findley found{.normal = {normal[0], normal[1], normal[2]}};
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Tensor& stress : states) {
     const Eigen::Vector3d traction = stress * normal;
     const double across = traction.dot(normal);
-    largest = std::max(across, largest);
+    if (shears.empty() || across > found.normal_stress) found.normal_stress = across;
     shears.push_back(traction - across * normal);
-    sum += shears.back();
+    mean += shears.back() / static_cast<double>(states.size());
   }
-  double most = 0.0;  // about the mean: at least the smallest
-  for (const Eigen::Vector3d& shear : shears)
-    most = std::max((shear - sum / static_cast<double>(shears.size())).norm(), most);
-  if (most + k * largest <= above) return {};
-  const double amplitude = SmallestBall<3>(shears).radius();
-  return Findley{amplitude + k * largest, amplitude, largest, {normal[0], normal[1], normal[2]}};
+  double most = 0.0;  // about the mean: the smallest circle is not larger
+  for (const auto& shear : shears) most = std::max((shear - mean).norm(), most);
+  if (most + k * found.normal_stress <= above) return found;
+  found.shear = smallest_ball<3>(shears).second;
+  found.value = found.shear + k * found.normal_stress;
+  return found;
 }
 
-/// Planes whose normals pass through a square of a cube's face.
-struct Patch {
-  int axis;  ///< of the face
-  double u, v;
-  Eigen::Vector3d middle() const {
-    Eigen::Vector3d normal;
-    normal[axis] = 1.0;
-    normal[(axis + 1) % 3] = u;
-    normal[(axis + 2) % 3] = v;
-    return normal.normalized();
-  }
-};
+/// The middle of planes whose normals pass through a square of a cube's face.
+Eigen::Vector3d normal_of(int face, double u, double v) {
+  Eigen::Vector3d normal;
+  normal[face] = 1.0;
+  normal[(face + 1) % 3] = u;
+  normal[(face + 2) % 3] = v;
+  return normal.normalized();
+}
 
 }  // namespace
 
 DangVan dang_van(std::span<const Tensor> states, double alpha) {
-  std::vector<Flat> deviators;
+  Points<9> deviators;
   for (const Tensor& stress : states) deviators.emplace_back(deviator(stress).reshaped());
-  const Flat center = SmallestBall<9>(deviators).center();
-  DangVan found{-std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0};
+  const auto center = smallest_ball<9>(deviators).first;
+  DangVan found;
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const Tensor amplitude = (deviators[i] - center).reshaped(3, 3);
@@ -88,45 +126,44 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
     const double hydrostatic = states[i].trace() / 3.0;
     smallest = std::min(hydrostatic, smallest);
     largest = std::max(hydrostatic, largest);
-    if (shear + alpha * hydrostatic > found.value) found = {shear + alpha * hydrostatic, shear, 0.0, 0.0};
+    if (shear + alpha * hydrostatic > found.value) found = {shear + alpha * hydrostatic, shear};
   }
   found.hydrostatic_mean = 0.5 * (smallest + largest);
   found.hydrostatic_largest = largest;
   return found;
 }
 
-/// With T, S the bounds of amplitude and shear stress, a plane within the angle d of the best one has at
-/// least its value less 2 d^2 (T + k S). Proof: at the best plane the radius of the smallest circle is the
-/// deviation of the shear stresses for some weights of the states, and that deviation is a lower bound at
-/// every other plane. Along a great circle it is the norm of a vector whose second derivative is at most 4 T,
-/// and the normal stress's is at most 4 S; the first derivative of the sum vanishes at the best plane.
-std::optional<Findley> findley(std::span<const Tensor> states, double k, double above) {
+/// Squares are bisected. With T, S the bounds of amplitude and shear stress, a plane within the angle d of
+/// the best one has at least its value less 2 d^2 (T + k S). Proof: at the best plane the radius of the
+/// smallest circle is the deviation of the shear stresses for some weights of the states, and that deviation
+/// is a lower bound at every other plane. Along a great circle it is the norm of a vector whose second
+/// derivative is at most 4 T, and the normal stress's is at most 4 S; the first derivative of the sum
+/// vanishes at the best plane.
+void find_plane(std::span<const Tensor> states, double k, Findley& best) {
   const Bounds bound = bounds(states);
   const double scale = bound.amplitude + k * bound.shear;
-  std::optional<Findley> best;
-  std::vector<Eigen::Vector3d> shears;
-  std::vector<Patch> patches{{0, 0.0, 0.0}, {1, 0.0, 0.0}, {2, 0.0, 0.0}};
-  for (double half = 1.0; !patches.empty(); half *= 0.5) {
+  struct Square {
+    int face;
+    double u, v, most;
+  };
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  std::vector<Square> squares{{0, 0.0, 0.0, kNoBound}, {1, 0.0, 0.0, kNoBound}, {2, 0.0, 0.0, kNoBound}};
+  for (double half = 1.0; !squares.empty(); half *= 0.5) {
     const double error = 4.0 * half * half * scale;  // the angle is at most sqrt(2) half
-    std::vector<std::pair<Patch, double>> left;
-    for (const Patch& patch : patches) {
-      const auto found = on_plane(states, k, patch.middle(), above - error, shears);
-      if (!found) continue;
-      left.emplace_back(patch, found->value + error);
-      if (!(found->value > above)) continue;
-      best = found;
-      above = found->value;
+    for (Square& square : squares) {
+      const Findley found =
+          on_plane(states, k, normal_of(square.face, square.u, square.v), best.value - error);
+      square.most = found.value + error;
+      if (found.value > best.value) best = found;
     }
-    if (error <= kPlaneError * scale) break;
-    patches.clear();
-    for (const auto& [patch, most] : left) {
-      if (!(most > above)) continue;
+    if (error <= kPlaneError * scale) return;
+    std::vector<Square> finer;
+    for (const Square& square : squares)
       for (const double u : {-0.5 * half, 0.5 * half})
         for (const double v : {-0.5 * half, 0.5 * half})
-          patches.push_back({patch.axis, patch.u + u, patch.v + v});
-    }
+          if (square.most > best.value) finer.push_back({square.face, square.u + u, square.v + v, kNoBound});
+    squares = std::move(finer);
   }
-  return best;
 }
 
 void LargestFatigue::include(std::span<const StressPlane> states, const FatigueCoefficients& asked,
@@ -134,26 +171,22 @@ void LargestFatigue::include(std::span<const StressPlane> states, const FatigueC
   std::vector<Tensor> cycle(states.size());
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const std::array<double, 3> at{grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), states[0].depth};
-    const auto keep = [&](auto& largest, const auto& found) {
-      if (!(found.value <= largest.found.value) && !std::isnan(largest.found.value)) largest = {found, at};
-    };
     for (std::size_t i = 0; i < states.size(); ++i) {
       const auto s = [&](Stress a) { return states[i].stress[a][cell]; };
       cycle[i] << s(k11), s(k12), s(k13), s(k12), s(k22), s(k23), s(k13), s(k23), s(k33);
     }
     const Bounds most = bounds(cycle);
-    if (std::isnan(most.amplitude)) {  // as of any state
-      keep(shear, DangVan{most.amplitude, {}, {}, {}});
-      keep(dang_van, DangVan{most.amplitude, {}, {}, {}});
-      keep(findley, Findley{most.amplitude, {}, {}, {}});
-      continue;
-    }
-    if (!(most.amplitude <= shear.found.value)) keep(shear, solver::dang_van(cycle, 0.0));
+    if (std::isnan(most.amplitude)) dang_van.value = findley.value = most.amplitude;  // and stay so
     if (const auto alpha = asked.dang_van;
-        alpha && !(most.amplitude + *alpha * most.hydrostatic <= dang_van.found.value))
-      keep(dang_van, solver::dang_van(cycle, *alpha));
-    if (const auto k = asked.findley; k && !(most.amplitude + *k * most.normal <= findley.found.value))
-      if (const auto found = solver::findley(cycle, *k, findley.found.value)) keep(findley, *found);
+        alpha && most.amplitude + *alpha * most.hydrostatic > dang_van.value) {
+      const DangVan found = solver::dang_van(cycle, *alpha);
+      if (found.value > dang_van.value) std::tie(dang_van, dang_van_at) = std::tie(found, at);
+    }
+    if (const auto k = asked.findley; k && most.amplitude + *k * most.normal > findley.value) {
+      const double before = findley.value;
+      find_plane(cycle, *k, findley);
+      if (findley.value > before) findley_at = at;
+    }
   }
 }
 
