@@ -59,13 +59,14 @@ std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& po
 
 Tensor deviator(const Tensor& stress) { return stress - stress.trace() / 3.0 * Tensor::Identity(); }
 
-/// Upper bounds of a cycle, from norms only: the shear stress of a deviator is at most its norm over sqrt(2),
-/// its largest principal value sqrt(2/3) of its norm.
+Eigen::Vector3d principal(const Tensor& stress) {
+  return stress.selfadjointView<Eigen::Lower>().eigenvalues();
+}
+
+/// Upper bounds of a cycle: the shear stress of a deviator is at most its norm over sqrt(2).
 struct Bounds {
   double amplitude = 0.0;  ///< of the shear stress on any plane; NaN where a stress is
-  double shear = 0.0;
   double hydrostatic = -std::numeric_limits<double>::infinity();
-  double normal = -std::numeric_limits<double>::infinity();  ///< stress on any plane
 };
 
 Bounds bounds(std::span<const Tensor> states) {
@@ -74,17 +75,16 @@ Bounds bounds(std::span<const Tensor> states) {
   Bounds most;
   for (const Tensor& stress : states) {
     const Tensor part = deviator(stress);
-    const double hydrostatic = stress.trace() / 3.0;
     most.amplitude = std::max((part - mean).norm() * M_SQRT1_2, most.amplitude);
-    most.shear = std::max(part.norm() * M_SQRT1_2, most.shear);
-    most.hydrostatic = std::max(hydrostatic, most.hydrostatic);
-    most.normal = std::max(hydrostatic + part.norm() * std::sqrt(2.0 / 3.0), most.normal);
+    most.hydrostatic = std::max(stress.trace() / 3.0, most.hydrostatic);
   }
   return most;
 }
 
-Findley on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal, double above) {
-  Points<3> shears;
+/// The shear stresses are scratch. A value that is not above `above` may be left out.
+Findley on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d& normal, double above,
+                 Points<3>& shears) {
+  shears.clear();
   Findley found{.normal = {normal[0], normal[1], normal[2]}};
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Tensor& stress : states) {
@@ -97,7 +97,7 @@ Findley on_plane(std::span<const Tensor> states, double k, const Eigen::Vector3d
   double most = 0.0;  // about the mean: the smallest circle is not larger
   for (const auto& shear : shears) most = std::max((shear - mean).norm(), most);
   if (most + k * found.normal_stress <= above) return found;
-  found.shear = smallest_ball<3>(shears).second;
+  found.shear = states.size() > 2 ? smallest_ball<3>(shears).second : most;
   found.value = found.shear + k * found.normal_stress;
   return found;
 }
@@ -121,8 +121,8 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const Tensor amplitude = (deviators[i] - center).reshaped(3, 3);
-    const Eigen::Vector3d principal = amplitude.selfadjointView<Eigen::Lower>().eigenvalues();
-    const double shear = 0.5 * (principal[2] - principal[0]);
+    const Eigen::Vector3d values = principal(amplitude);
+    const double shear = 0.5 * (values[2] - values[0]);
     const double hydrostatic = states[i].trace() / 3.0;
     smallest = std::min(hydrostatic, smallest);
     largest = std::max(hydrostatic, largest);
@@ -133,30 +133,40 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
   return found;
 }
 
-/// Squares are bisected. With T, S the bounds of amplitude and shear stress, a plane within the angle d of
-/// the best one has at least its value less 2 d^2 (T + k S). Proof: at the best plane the radius of the
-/// smallest circle is the deviation of the shear stresses for some weights of the states, and that deviation
-/// is a lower bound at every other plane. Along a great circle it is the norm of a vector whose second
-/// derivative is at most 4 T, and the normal stress's is at most 4 S; the first derivative of the sum
-/// vanishes at the best plane.
+/// Squares are bisected. With T a bound of the shear stress's amplitude and S the largest shear stress, a
+/// plane within the angle d of the best one has at least its value less 2 d^2 (T + k S). Proof: at the best
+/// plane the radius of the smallest circle is the deviation of the shear stresses for some weights of the
+/// states, and that deviation is a lower bound at every other plane. Along a great circle it is the norm of a
+/// vector whose second derivative is at most 4 T, and the normal stress's is at most 4 S; the first
+/// derivative of the sum vanishes at the best plane.
 void find_plane(std::span<const Tensor> states, double k, Findley& best) {
-  const Bounds bound = bounds(states);
-  const double scale = bound.amplitude + k * bound.shear;
+  const double amplitude = bounds(states).amplitude;
+  double shear = 0.0, normal = -std::numeric_limits<double>::infinity();
+  for (const Tensor& stress : states) {
+    const Eigen::Vector3d values = principal(stress);
+    shear = std::max(0.5 * (values[2] - values[0]), shear);
+    normal = std::max(values[2], normal);
+  }
+  if (!(amplitude + k * normal > best.value)) return;
+  const double scale = amplitude + k * shear;
   struct Square {
     int face;
     double u, v, most;
   };
   constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  Points<3> shears;
   std::vector<Square> squares{{0, 0.0, 0.0, kNoBound}, {1, 0.0, 0.0, kNoBound}, {2, 0.0, 0.0, kNoBound}};
   for (double half = 1.0; !squares.empty(); half *= 0.5) {
-    const double error = 4.0 * half * half * scale;  // the angle is at most sqrt(2) half
+    const double largest = 4.0 * half * half * scale;  // the angle is at most sqrt(2) half
     for (Square& square : squares) {
+      const double u = std::max(std::abs(square.u) - half, 0.0), v = std::max(std::abs(square.v) - half, 0.0);
+      const double error = largest / (1.0 + u * u + v * v);  // the cube lies farther out here
       const Findley found =
-          on_plane(states, k, normal_of(square.face, square.u, square.v), best.value - error);
+          on_plane(states, k, normal_of(square.face, square.u, square.v), best.value - error, shears);
       square.most = found.value + error;
       if (found.value > best.value) best = found;
     }
-    if (error <= kPlaneError * scale) return;
+    if (largest <= kPlaneError * scale) return;
     std::vector<Square> finer;
     for (const Square& square : squares)
       for (const double u : {-0.5 * half, 0.5 * half})
@@ -182,11 +192,9 @@ void LargestFatigue::include(std::span<const StressPlane> states, const FatigueC
       const DangVan found = solver::dang_van(cycle, *alpha);
       if (found.value > dang_van.value) std::tie(dang_van, dang_van_at) = std::tie(found, at);
     }
-    if (const auto k = asked.findley; k && most.amplitude + *k * most.normal > findley.value) {
-      const double before = findley.value;
-      find_plane(cycle, *k, findley);
-      if (findley.value > before) findley_at = at;
-    }
+    const double before = findley.value;
+    if (asked.findley) find_plane(cycle, *asked.findley, findley);
+    if (findley.value > before) findley_at = at;
   }
 }
 
