@@ -92,7 +92,8 @@ class Results(unittest.TestCase):
             self.solve(scene)
         self.solve("paper", "--set", "solver.method=paper")
         self.solve("paper", "--set", "load.moment_ratio=0")
-        self.solve("paper", "--stresses", self.folder / "stress.csv", "--depths", "1e-4")
+        for plan in ((), ("--plan",)):
+            self.solve("paper", "--stresses", self.folder / "stress.csv", "--depths", "1e-4", *plan)
         self.solve("fretting_torsion", "--stresses", self.folder / "{body}.csv", "--depths", "1e-4", "--dang-van", "0.3", "--findley", "0.2")
         self.solve("paper", "--set", "contact.friction=0", "--set", "load.moment_ratio=0")
         self.solve("torsion_and_force", "--set", "solver.substeps=4", "--set", "solver.max_iterations=3", code=1)

@@ -6,6 +6,7 @@
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/solve/accuracy.hpp"
+#include "convergence/solve/stress_files.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -17,6 +18,16 @@ inline constexpr solver::Index kReferenceCells = 64;
 /// unit of work in which solves on different machines can be compared. The grid has the scene's ratio of
 /// sides and kReferenceCells cells along the longer side; a height map keeps its own grid.
 double application_seconds(solver::Scene scene);
+
+/// Predicted cost of the stresses below the surface after a solve.
+struct StressPlan {
+  double planes;   ///< whose stresses are computed: depths of bodies and of states
+  double bytes;    ///< of the program meanwhile, at most
+  double seconds;  ///< of CPU time on this machine, with the files
+};
+StressPlan plan_stresses(const StressFiles& files, const solver::Scene& scene);
+/// Throws OutOfMemory where they do not fit; InputError as solver::make_model().
+void require_memory(const StressFiles& files, const solver::Scene& scene);
 
 /// Predicted size and cost of a solve.
 struct SolvePlan {
@@ -30,6 +41,7 @@ struct SolvePlan {
   double seconds = 0.0;     ///< on one rank of this machine, of all grids; NaN: not measured for this method
   int grids = 1;            ///< solves whose mean is the answer
   std::string note = {};    ///< names surfaces outside the data that chose the mesh; empty: none
+  std::optional<StressPlan> stresses = {};  ///< computed after the solve, in memory that it has left
 };
 
 /// Throws InputError as make_model(), and as require_oracle() for the exact model.

@@ -127,7 +127,7 @@ void add_stress_options(CLI::App& command, StressFiles& stresses) {
   add_coefficient("--findley", stresses.fatigue.findley,
                   "k: the largest shear amplitude + k times largest normal stress of a plane over the last "
                   "cycle");
-  for (const char* const option : {"--accuracy", "--plan"}) file->excludes(command.get_option(option));
+  for (const char* const option : {"--accuracy", "--ranks"}) file->excludes(command.get_option(option));
 }
 
 void require_file_formats(const AnswerFiles& files) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -187,6 +188,7 @@ void keep_last_cycle(SolveSceneOptions& options, int last, std::vector<solver::S
 }
 
 SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json& result) {
+  if (!request.stresses.file.empty()) require_memory(request.stresses, request.scene);
   SolveSceneOptions options = grid_options(request);
   std::vector<solver::SolutionFields> cycle;
   if (request.stresses.fatigue.any()) keep_last_cycle(options, request.scene.cycles, cycle);
@@ -251,8 +253,13 @@ std::string file_of_step(std::string file, std::size_t step) {
 
 int run_request(const SolveRequest& request, std::ostream& text, Json& result) {
   if (request.plan) {
-    const SolvePlan plan = request.target ? accuracy_plan(request.scene, *request.target)
-                                          : plan_solve(request.scene, request.planned_ranks);
+    SolvePlan plan = request.target ? accuracy_plan(request.scene, *request.target)
+                                    : plan_solve(request.scene, request.planned_ranks);
+    if (!request.stresses.file.empty()) {
+      plan.stresses = plan_stresses(request.stresses, request.scene);
+      for (double* const bytes : {&plan.bytes, &plan.least_bytes})
+        *bytes = std::max(plan.stresses->bytes, *bytes);
+    }
     result["plan"] = to_json(plan);
     text << plan_text(plan);
     return 0;

@@ -70,36 +70,8 @@ void StressFiles::read_depths(const solver::Scene& scene) {
 
 namespace {
 
-/// The largest parameters over the states of a cycle, at all depths.
-Json fatigue(solver::SubsurfaceStresses& stresses, const StressFiles& files,
-             const std::vector<solver::SolutionFields>& cycle) {
-  const auto& asked = files.fatigue;
-  solver::LargestFatigue largest;
-  std::vector<solver::StressPlane> states(cycle.size());
-  for (const double depth : files.depths) {
-    for (std::size_t i = 0; i < cycle.size(); ++i) {
-      stresses.act(cycle[i]);
-      states[i] = stresses.at(depth);
-    }
-    largest.include(states, asked, cycle[0].grid);
-  }
-  Json json{{"states", cycle.size()}};
-  if (const auto& [value, shear, mean, most] = largest.dang_van; asked.dang_van)
-    json["dang_van"] = {{"alpha", *asked.dang_van},  {"value", value},
-                        {"at", largest.dang_van_at}, {"shear", shear},
-                        {"hydrostatic_mean", mean},  {"hydrostatic_largest", most}};
-  if (const auto& [value, shear, normal_stress, normal] = largest.findley; asked.findley)
-    json["findley"] = {{"k", *asked.findley},
-                       {"value", value},
-                       {"at", largest.findley_at},
-                       {"shear", shear},
-                       {"normal_stress", normal_stress},
-                       {"normal", normal}};
-  return json;
-}
-
 Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scene& scene,
-                 const solver::Solution& solution, const std::vector<solver::SolutionFields>& cycle) {
+                 const solver::Solution& solution) {
   const solver::Grid& grid = solution.grid;
   const auto& material = body == solver::Body::upper ? scene.upper : scene.lower;
   solver::SubsurfaceStresses stresses(solution, material.poisson_ratio, body, solution.threads);
@@ -122,22 +94,50 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
              {"tresca", json(largest.tresca)},
              {"tension", json(largest.tension)}};
   if (const auto yield = material.yield_stress) found["yield_ratio"] = largest.von_mises.value / *yield;
-  if (!files.fatigue.any()) return found;
-  if (cycle.size() == scene.steps.size()) {
-    found["fatigue"] = fatigue(stresses, files, cycle);
-  } else {
-    set_missing(found, "fatigue", "the states of the last cycle are not all known");
-  }
   return found;
+}
+
+/// The largest parameters over the states of a cycle, at all depths.
+Json fatigue(solver::Body body, double poisson, const StressFiles& files,
+             const std::vector<solver::SolutionFields>& cycle, int threads) {
+  const auto& asked = files.fatigue;
+  solver::LargestFatigue largest;
+  std::vector<solver::StressPlane> states(cycle.size());
+  for (const double depth : files.depths) {
+    for (std::size_t i = 0; i < cycle.size(); ++i)
+      states[i] = solver::SubsurfaceStresses(cycle[i], poisson, body, threads).at(depth);
+    largest.include(states, asked, cycle[0].grid);
+  }
+  Json json{{"states", cycle.size()}};
+  if (const auto& [value, shear, mean, most] = largest.dang_van; asked.dang_van)
+    json["dang_van"] = {{"alpha", *asked.dang_van},  {"value", value},
+                        {"at", largest.dang_van_at}, {"shear", shear},
+                        {"hydrostatic_mean", mean},  {"hydrostatic_largest", most}};
+  if (const auto& [value, shear, normal_stress, normal] = largest.findley; asked.findley)
+    json["findley"] = {{"k", *asked.findley},
+                       {"value", value},
+                       {"at", largest.findley_at},
+                       {"shear", shear},
+                       {"normal_stress", normal_stress},
+                       {"normal", normal}};
+  return json;
 }
 
 }  // namespace
 
 Json write_stresses(const StressFiles& files, const solver::Scene& scene, const solver::Solution& solution,
                     const std::vector<solver::SolutionFields>& cycle) {
-  const std::vector<solver::Body> bodies = files.bodies(scene);
-  Json found = stresses_of(bodies.front(), files, scene, solution, cycle);
-  if (bodies.size() > 1) found["upper"] = stresses_of(bodies.back(), files, scene, solution, cycle);
+  Json found;
+  for (const solver::Body body : files.bodies(scene)) {
+    const auto& material = body == solver::Body::upper ? scene.upper : scene.lower;
+    Json of_body = stresses_of(body, files, scene, solution);
+    if (files.fatigue.any() && cycle.size() != scene.steps.size()) {
+      set_missing(of_body, "fatigue", "the states of the last cycle are not all known");
+    } else if (files.fatigue.any()) {
+      of_body["fatigue"] = fatigue(body, material.poisson_ratio, files, cycle, solution.threads);
+    }
+    (found.is_null() ? found : found[word(body)]) = std::move(of_body);
+  }
   return found;
 }
 

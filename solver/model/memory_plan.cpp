@@ -35,6 +35,8 @@ constexpr double kFieldsBefore = 20.0;
 /// and guesses. They stand in for much of the step before.
 constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
+/// Doubles a cell of a padded grid while stresses are computed, and for each state of a cycle.
+constexpr double kFieldsOfStresses = 80.0, kFieldsOfState = 9.5;
 /// The program and its libraries, that for HDF5 included; where several processes share a grid MPI's too.
 double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
 double field_bytes(double fields, Index cells) {
@@ -47,6 +49,8 @@ double bytes_around(const Scene& scene, const Grid& grid) {
 
 /// Bytes. Below this size the memory check is skipped.
 constexpr double kLittleMemory = 0x1p26;
+
+}  // namespace
 
 void require_memory(const Scene& scene, const Grid& grid, double bytes) {
   if (!scene.solver.memory_limit && bytes < kLittleMemory) return;
@@ -62,7 +66,12 @@ void require_memory(const Scene& scene, const Grid& grid, double bytes) {
                                                             : "fewer cells take"));
 }
 
-}  // namespace
+double memory_of_stresses(const Grid& grid, std::size_t states) {
+  const double padded = 0.25 * static_cast<double>(fast_length(2 * grid.n1) * fast_length(2 * grid.n2));
+  const double fields = kFieldsOfStresses * padded +
+                        kFieldsOfState * static_cast<double>(states) * static_cast<double>(grid.cells());
+  return program_bytes(grid) + fields * sizeof(double);
+}
 
 void require_memory_for_files(const Scene& scene) {
   std::vector<std::filesystem::path> files{scene.contact.pressure_file, scene.contact.friction.map};

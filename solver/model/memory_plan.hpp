@@ -19,6 +19,12 @@ struct CandidateFraction {
 Memory predicted_memory(const Scene& scene, const Model& model, const CandidateFraction& parts = {});
 /// Throws OutOfMemory where that does not fit.
 void require_memory(const Scene& scene, const Model& model, const CandidateFraction& parts);
+/// The same of any number of bytes.
+void require_memory(const Scene& scene, const Grid& grid, double bytes);
+
+/// Memory while stresses below the surface are computed after a solve, with the given number of states of a
+/// cycle, in bytes, at most.
+double memory_of_stresses(const Grid& grid, std::size_t states);
 
 /// The same for the tables that the scene names: each is held as a whole while it is read.
 void require_memory_for_files(const Scene& scene);

@@ -17,19 +17,13 @@ const Grid& whole(const Grid& grid) {
 }  // namespace
 
 SubsurfaceStresses::SubsurfaceStresses(const SolutionFields& fields, double poisson, Body body, int threads)
-    : grid_(whole(fields.grid)), poisson_(poisson), body_(body), transform_(grid_, 1, threads) {
-  act(fields);
-  for (auto& stress : stresses_) stress.resize(count(transform_.columns() * length()));
-}
-
-void SubsurfaceStresses::act(const SolutionFields& fields) {
-  const double sign = body_ == Body::lower ? 1.0 : -1.0;
+    : grid_(whole(fields.grid)), poisson_(poisson), transform_(grid_, 1, threads) {
+  const double sign = body == Body::lower ? 1.0 : -1.0;
   const Index cells = grid_.cells();
   const std::array<Eigen::ArrayXd, kTractions> given{fields.pressure, sign * fields.traction.head(cells),
                                                      sign * fields.traction.tail(cells)};
   const std::size_t size = count(transform_.columns() * length());
   for (std::size_t b = 0; b < kTractions; ++b) {
-    tractions_[b].clear();
     if ((given[b] == 0.0).all()) continue;
     tractions_[b].resize(size);
     transform_.forward_rows({given[b].data(), count(cells)});
@@ -39,6 +33,7 @@ void SubsurfaceStresses::act(const SolutionFields& fields) {
       std::copy_n(spectrum.odd[0], length() / 2, to + length() / 2);
     });
   }
+  for (auto& stress : stresses_) stress.resize(size);
 }
 
 /// The offsets are i, j >= 0; values are halved on the axes, where a quadrant's images coincide. A kernel is

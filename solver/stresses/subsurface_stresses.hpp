@@ -33,8 +33,6 @@ class SubsurfaceStresses {
  public:
   /// Throws std::invalid_argument for a grid that is a quadrant or that several ranks share.
   SubsurfaceStresses(const SolutionFields& fields, double poisson, Body body, int threads = 1);
-  /// The next stresses are those under the tractions of another solution on the same grid.
-  void act(const SolutionFields& fields);
   /// Throws std::domain_error unless depth > 0, m.
   StressPlane at(double depth);
 
@@ -48,7 +46,6 @@ class SubsurfaceStresses {
 
   Grid grid_;
   double poisson_;
-  Body body_;
   PaddedTransform transform_;
   std::array<std::vector<Complex>, kTractions> tractions_;  ///< spectra, column by column; empty: zero
   std::array<std::vector<Complex>, kStresses> stresses_;

@@ -63,6 +63,23 @@ class Memory(ProgramTest):
         held = b"x" * (256 << 20)
         self.assertLess(self.taken("paper", 16)[1], len(held) / 4)
 
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_stresses_take_at_most_what_is_predicted(self):
+        """The HDF5 library is counted."""
+        for cells in ([128, 128], [256, 256], [420, 300]):
+            for options in ((), ("--dang-van", "0.3", "--findley", "0.2")):
+                solve = ["solve", *words("fretting_torsion", 8, f"grid.cells={cells}"), "--stresses", "{depth}.h5", "--depths", "50um,0.1mm",
+                         *options]
+                plan = self.result(*solve, "--plan")["plan"]
+                started = subprocess.Popen([PROGRAM, *solve, "--quiet"], stdout=subprocess.DEVNULL)
+                _, status, usage = os.wait4(started.pid, 0)
+                started.returncode = os.waitstatus_to_exitcode(status)
+                self.assertEqual(started.returncode, 0)
+                self.assertLessEqual(plan["stresses"]["bytes"], plan["bytes"])
+                self.assertGreaterEqual(plan["bytes"], 1024 * usage.ru_maxrss, solve)
+                self.assertLessEqual(plan["bytes"], MOST * 1024 * usage.ru_maxrss, solve)
+                self.run_program(*solve, "--memory-limit", f"{plan['stresses']['bytes'] - 2:.0f}", code=2, says="grid.cells")
+
     def test_limit_is_what_a_plan_may_need(self):
         solve = ["solve", *words("paper", 16)]
         plan = self.result(*solve, "--plan")["plan"]
