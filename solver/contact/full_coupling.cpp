@@ -19,9 +19,10 @@ constexpr double kProgress = 0.1;
 constexpr std::size_t kLastGaps = 3;
 constexpr double kMinStep = 1.0 / 64.0;
 constexpr double kNoGapYet = std::numeric_limits<double>::infinity();
-/// Relative gap at which the first turn stops, and for later turns its ratio to the last turn's gap.
-constexpr double kFirstGap = 1e-2;
+/// Relative gap at which a turn stops, over the last turn's gap.
 constexpr double kPartOfGap = 0.03;
+/// A traction slips if it is above this part of its bound: a guess comes from another grid.
+constexpr double kNearlyBound = 0.99;
 /// Changes that Anderson's acceleration combines.
 constexpr int kDepth = 4;
 
@@ -52,18 +53,24 @@ class Turns {
       : problem_(problem),
         opening_by_(elasticity, grid),
         complementarity_(elasticity, grid, problem.gap),
-        opening_(opening_by_(problem.traction)),
-        switches_(Eigen::ArrayXi::Zero(grid.cells())) {}
+        opening_(opening_by_(problem.guess.traction)),
+        pressure_(problem.guess.pressure),
+        switches_(Eigen::ArrayXi::Zero(grid.cells())) {
+    if (pressure_.size() == 0) return;
+    traction_ = problem.guess.traction;
+    slips_ = norms(traction_) > kNearlyBound * problem.friction_bound(pressure_);
+  }
 
   CoupledSolution run() {
     double step = 1.0;
-    double wanted = kFirstGap;
+    double wanted = problem_.guess.gap;
     for (solution_.turns = 1;; ++solution_.turns) {
       // A pressure solved to its tolerance may carry a load that a rough one does not.
       if (!take(wanted) && !take(0.0)) return std::move(solution_);
       const double largest = std::ranges::max(last_gaps_);
       measure();
-      if (gap_ <= problem_.tolerance && (!finish() || gap_ <= problem_.tolerance)) return settled();
+      if (solution_.turns == 1) solution_.first_gap = gap_;
+      if (is_settled() && (is_final(wanted) || !finish() || is_settled())) return settled();
       if (!(gap_ <= (1.0 - kProgress * step) * largest)) step *= 0.5;
       std::rotate(last_gaps_.begin(), last_gaps_.begin() + 1, last_gaps_.end());
       last_gaps_.back() = gap_;
@@ -79,10 +86,18 @@ class Turns {
     return solution_.normal.status == Status::converged && solution_.tangential.status == Status::converged;
   }
 
+  bool is_settled() const {
+    return gap_ <= std::max(problem_.tolerance, problem_.part_of_first_gap * solution_.first_gap);
+  }
+
+  /// True if a turn solves the tractions to the scene's tolerance.
+  bool is_final(double gap) const { return gap <= problem_.tolerance || problem_.part_of_first_gap > 0.0; }
+
   /// gap: relative gap at which to stop both; 0: the scene's tolerance.
   bool take(double gap) {
     solution_.normal = problem_.solve_pressure(opening_, {gap, pressure_});
-    solution_.tangential = problem_.solve_tractions(solution_.normal.pressure, {gap, traction_guess()});
+    solution_.tangential = problem_.solve_tractions(
+        solution_.normal.pressure, {gap <= problem_.tolerance ? 0.0 : gap, traction_guess()});
     return converged();
   }
 

@@ -35,13 +35,22 @@ struct StaggeredTarget {
 template <class Result, class... Target>
 using Under = std::function<Result(const Eigen::ArrayXd& field, const Target&... target)>;
 
+/// Where the first turn starts.
+struct CoupledGuess {
+  Eigen::ArrayXd traction;       ///< 2*cells
+  Eigen::ArrayXd pressure = {};  ///< empty: none
+  double gap = 1e-2;             ///< relative gap at which the first turn stops
+};
+
 /// The two problems of a staggered iteration on the whole grid: each is solved with the last result of the
 /// other problem.
 struct CoupledProblem {
-  Eigen::ArrayXd gap;                    ///< undeformed; infinite where the bodies cannot touch
-  Eigen::ArrayXd traction;               ///< guess, 2*cells
-  double tolerance;                      ///< on the complementarity gap
-  Under<Eigen::ArrayXd> friction_bound;  ///< under a pressure
+  const Eigen::ArrayXd& gap;  ///< undeformed; infinite where the bodies cannot touch
+  CoupledGuess guess;
+  double tolerance;  ///< on the complementarity gap
+  /// Positive on a coarse grid: stop at this part of the first turn's gap, if that is above the tolerance.
+  double part_of_first_gap = 0.0;
+  Under<Eigen::ArrayXd> friction_bound;                        ///< under a pressure
   Under<NormalSolution, StaggeredTarget> solve_pressure;       ///< under an opening by shear
   Under<TangentialSolution, StaggeredTarget> solve_tractions;  ///< under a pressure
 };
@@ -50,13 +59,15 @@ struct CoupledSolution {
   NormalSolution normal;
   TangentialSolution tangential;
   int turns = 0;
+  double first_gap = 0.0;  ///< after the first turn
 };
 
 /// Panagiotopoulos' staggered iteration (1975) for the opening o = o(q) by shear:
 ///
 /// 1. Pressure p under the opening o, then tractions q under p, both to a part of the last gap.
 /// 2. Complementarity gap of p under the opening o(q) of the new tractions.
-/// 3. Below the tolerance: q is solved to the scene's tolerance; stop if the gap still holds.
+/// 3. Below the tolerance: q is solved to the scene's tolerance, if it has not been; stop if the gap still
+///    holds.
 /// 4. Otherwise o by Anderson's combination of the last openings, with a step that is halved where the gap
 ///    does not fall; again from 1.
 ///

@@ -52,14 +52,8 @@ class PressureOnGrid {
     return {.g = &heights_, .imposed = {{&packed_approach_, total_pressure_}}};
   }
 
-  /// A coarse cell can touch if half of its area can, and has the mean gap of that area.
   PressureOnGrid coarsened(const Grid& coarse) const {
-    const ArrayXd part = restrict_to(coarse, grid_, gap_->isFinite().cast<double>());
-    const ArrayXd height = restrict_to(coarse, grid_, gap_->isFinite().select(*gap_, 0.0));
-    const double most = part.maxCoeff();
-    return {coarse,
-            std::make_shared<const ArrayXd>(
-                (part >= std::min(0.5, most)).select(height / part.max(0.25 * most), INFINITY)),
+    return {coarse, std::make_shared<const ArrayXd>(coarsened_gap(coarse, grid_, *gap_)),
             total_pressure_ * grid_.cell_area() / coarse.cell_area()};
   }
 
@@ -174,6 +168,13 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
 }
 
 }  // namespace
+
+ArrayXd coarsened_gap(const Grid& coarse, const Grid& grid, const ArrayXd& gap) {
+  const ArrayXd part = restrict_to(coarse, grid, gap.isFinite().cast<double>());
+  const ArrayXd height = restrict_to(coarse, grid, gap.isFinite().select(gap, 0.0));
+  const double most = part.maxCoeff();
+  return (part >= std::min(0.5, most)).select(height / part.max(0.25 * most), INFINITY);
+}
 
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                     const NormalProblem& problem, const NormalOptions& options) {

@@ -41,6 +41,10 @@ struct NormalSolution {
   double part = 1.0;                 ///< candidates for contact over all cells
 };
 
+/// The undeformed gap on a coarse grid. A coarse cell can touch if half of its area can, and has the mean gap
+/// of that area.
+Eigen::ArrayXd coarsened_gap(const Grid& coarse, const Grid& grid, const Eigen::ArrayXd& gap);
+
 /// 1. Nested grids, from the coarsest up (nested_iteration.hpp), or from a guess.
 /// 2. Candidates for contact cells, from the coarse grid's pressure and opening.
 /// 3. Newton's method on the natural map p = max(0, p - rho (K p + h - approach)) (natural_map_newton.hpp),

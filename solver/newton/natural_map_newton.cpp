@@ -62,6 +62,7 @@ class NaturalMapNewton {
     safeguards_ = {};
     linear_.discard_tangents();
     state_.enter(q, multipliers);
+    if (options.least_iterations > 0) linear_.expect_states(state_, q, trial_);
     double best_gap = std::numeric_limits<double>::infinity();
     double wanted = options.tolerance;
     int idle_steps = 0;

@@ -76,6 +76,13 @@ class TangentProblem {
     prepared_at_ = state.multipliers();
   }
 
+  /// The cells' states in a guess: the next linearise() counts those that differ.
+  void expect_states(const NewtonState<Set>& state, const ArrayXd& guess, Trial& scratch) {
+    constexpr double kBeyondCircle = 1.0 + 1e-9;
+    scratch.u = kBeyondCircle * guess;
+    state.set().linearise(scratch.u, state.rho(), symbol_.diagonal(), space_);
+  }
+
   /// needed: tolerance over gap; applications_left: at least one.
   LinearTarget target(double needed, long applications_left) const {
     const int iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));

@@ -8,6 +8,7 @@
 
 #include "solver/contact/full_coupling.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/grid/grid_transfer.hpp"
 #include "solver/model/memory_plan.hpp"
 #include "solver/step/pressure.hpp"
 #include "solver/step/tractions.hpp"
@@ -21,6 +22,9 @@ using Eigen::ArrayXd;
 constexpr double kSumRounding = 1e-12;
 /// Rounding of the duality gap, in which sums cancel, relative to the energy.
 constexpr double kGapRounding = 1e-13;
+/// Pressure and shear of a coarse grid agree up to this part of their first gap, which is about the error of
+/// the mesh, and the first turn of the next grid is solved to the same gap.
+constexpr double kPartOfFirstGap = 0.3;
 
 /// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and
 /// freezes slip directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to
@@ -52,18 +56,74 @@ struct Found {
   SolvedStep solved;
   WorkNumbers work;
   std::vector<Omission> left_out;
+  double first_gap = 0.0;  ///< of full coupling, after its first turn
 };
+
+/// The same contact on a coarse grid.
+Model coarsened(const Model& model, const Grid& coarse) {
+  Model there = model;
+  there.grid = coarse;
+  there.gap = coarsened_gap(coarse, model.grid, model.gap);
+  there.friction = resampled(model.friction, model.grid, coarse, {});
+  return there;
+}
+
+/// The contact before a step, as far as the step on a coarse grid needs it.
+ContactState coarsened(const ContactState& before, const Grid& grid, const Grid& coarse) {
+  ContactState there;
+  if (before.untouched()) return there;
+  there.normal.pressure = restrict_to(coarse, grid, before.normal.pressure);
+  there.traction = restrict_to(coarse, grid, before.traction);
+  there.motion = before.motion;
+  there.energy = before.energy * grid.cell_area() / coarse.cell_area();
+  return there;
+}
+
+/// before + the change on a coarse grid since that state, which there is `start`; both may be empty: zero.
+ArrayXd with_change(const ArrayXd& before, const ArrayXd& start, const Grid& grid, const Grid& coarse,
+                    const ArrayXd& there) {
+  constexpr std::array<Parity, 2> kParities{};
+  const std::span components(kParities.data(), static_cast<std::size_t>(there.size() / coarse.cells()));
+  if (before.size() == 0) return prolong_to(grid, coarse, there, components);
+  return before + prolong_to(grid, coarse, there - start, components);
+}
+
+Found solve_coupled(const Scene& scene, const Model& model, const Step& step, const ContactState& before,
+                    const Progress& progress, bool is_coarse);
+
+/// Pressure and tractions of the coarse grid, solved to the error of the mesh. Adds to the work.
+CoupledGuess guess_from_coarse_grid(const Scene& scene, const Model& model, const Step& step,
+                                    const ContactState& before, WorkNumbers& work) {
+  const Grid& grid = model.grid;
+  CoupledGuess guess{before.untouched() ? ArrayXd::Zero(2 * grid.cells()) : before.traction};
+  if (!can_coarsen(grid)) return guess;
+  const Grid coarse = coarser(grid);
+  const ContactState start = coarsened(before, grid, coarse);
+  const Found found = solve_coupled(scene, coarsened(model, coarse), step, start, {}, true);
+  const double cells = static_cast<double>(coarse.cells()) / static_cast<double>(grid.cells());
+  work.pressure_applications = cells * found.work.pressure_applications;
+  work.operator_applications = cells * found.work.operator_applications;
+  work.safeguards = found.work.safeguards;
+  const auto& [loads, normal, tangential] = found.solved;
+  if (normal.status != Status::converged || tangential.status != Status::converged) return guess;
+  guess.pressure =
+      with_change(before.normal.pressure, start.normal.pressure, grid, coarse, normal.pressure).max(0.0);
+  guess.traction = with_change(before.traction, start.traction, grid, coarse, tangential.traction);
+  guess.gap = kPartOfFirstGap * found.first_gap;
+  return guess;
+}
 
 /// Pressure and tractions, each under the other.
 Found solve_coupled(const Scene& scene, const Model& model, const Step& step, const ContactState& before,
-                    const Progress& progress) {
+                    const Progress& progress, bool is_coarse) {
   const Reduction whole(model.grid);
   Found found;
   LoadStep& loads = found.solved.loads;
   const CoupledProblem problem{
       .gap = model.gap,
-      .traction = before.untouched() ? ArrayXd::Zero(2 * model.grid.cells()) : before.traction,
+      .guess = guess_from_coarse_grid(scene, model, step, before, found.work),
       .tolerance = scene.solver.tolerance,
+      .part_of_first_gap = is_coarse ? kPartOfFirstGap : 0.0,
       .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
       .solve_pressure =
           [&](const ArrayXd& opening, const StaggeredTarget& goal) {
@@ -75,8 +135,7 @@ Found solve_coupled(const Scene& scene, const Model& model, const Step& step, co
       .solve_tractions =
           [&](const ArrayXd& pressure, const StaggeredTarget& goal) {
             loads = load_step(scene, model, step, pressure, before);
-            if (goal.gap > 0.0 && !loads.carried()) return TangentialSolution{};
-            require_carried(scene, model, step, loads);
+            if (!loads.carried()) return TangentialSolution{};
             FoundTractions tractions =
                 find_tractions(scene, model, std::move(loads), pressure, before, progress, goal);
             loads = std::move(tractions.loads);
@@ -86,9 +145,11 @@ Found solve_coupled(const Scene& scene, const Model& model, const Step& step, co
             return std::move(tractions.solution);
           }};
   CoupledSolution coupled = solve_fully_coupled(elasticity(scene, model, whole), model.grid, problem);
-  if (coupled.tangential.status == Status::converged) {
+  if (!is_coarse) require_carried(scene, model, step, loads);
+  if (!is_coarse && coupled.tangential.status == Status::converged) {
     require_contact_within_grid(scene, model, step, coupled.normal, coupled.tangential.traction);
   }
+  found.first_gap = coupled.first_gap;
   found.solved.normal = std::move(coupled.normal);
   found.solved.tangential = std::move(coupled.tangential);
   found.work.turns = coupled.turns;
@@ -166,7 +227,7 @@ StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& s
   Stopwatch watch(model.cache.get());
   const KeptRounding rounding;  // solves that draw their rounding change it
   Found found = model.shear_coupling && model.law->couples()
-                    ? solve_coupled(scene, model, step.loads, before, progress)
+                    ? solve_coupled(scene, model, step.loads, before, progress, false)
                     : solve_in_sequence(scene, model, step.loads, before, progress);
   StepResult result;
   result.step = step;
