@@ -24,7 +24,7 @@ constexpr double kSumRounding = 1e-12;
 constexpr double kGapRounding = 1e-13;
 /// Pressure and shear of a coarse grid agree up to this part of their first gap, which is about the error of
 /// the mesh, and the first turn of the next grid is solved to the same gap.
-constexpr double kPartOfFirstGap = 0.3;
+constexpr double kPartOfFirstTurn = 0.3;
 
 /// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and
 /// freezes slip directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to
@@ -109,7 +109,7 @@ CoupledGuess guess_from_coarse_grid(const Scene& scene, const Model& model, cons
   guess.pressure =
       with_change(before.normal.pressure, start.normal.pressure, grid, coarse, normal.pressure).max(0.0);
   guess.traction = with_change(before.traction, start.traction, grid, coarse, tangential.traction);
-  guess.gap = kPartOfFirstGap * found.first_gap;
+  guess.gap = kPartOfFirstTurn * found.first_gap;
   return guess;
 }
 
@@ -123,7 +123,7 @@ Found solve_coupled(const Scene& scene, const Model& model, const Step& step, co
       .gap = model.gap,
       .guess = guess_from_coarse_grid(scene, model, step, before, found.work),
       .tolerance = scene.solver.tolerance,
-      .part_of_first_gap = is_coarse ? kPartOfFirstGap : 0.0,
+      .part_of_first_gap = is_coarse ? kPartOfFirstTurn : 0.0,
       .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
       .solve_pressure =
           [&](const ArrayXd& opening, const StaggeredTarget& goal) {
