@@ -12,8 +12,8 @@ _slipstick() {
       "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --at --poisson --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
       "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "solve --accuracy-of") words="twist traction stick_radius" ;;
-      "solve --program" | "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --proven" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --loop" | "solve --depths" | "solve --stresses" | "solve --memory-limit" | "solve --json") return ;;
-      "solve "*) [[ $current != -* ]] || words="--help --set --program --allow-programs --model --accuracy --accuracy-of --uncertain --plan --continuum --proven --ranks --fields --checkpoint --resume --figure --loop --depths --stresses --memory-limit --json --quiet" ;;
+      "solve --program" | "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --proven" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --loop" | "solve --depths" | "solve --stresses" | "solve --dang-van" | "solve --findley" | "solve --memory-limit" | "solve --json") return ;;
+      "solve "*) [[ $current != -* ]] || words="--help --set --program --allow-programs --model --accuracy --accuracy-of --uncertain --plan --continuum --proven --ranks --fields --checkpoint --resume --figure --loop --depths --stresses --dang-van --findley --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --columns" | "check --twist" | "check --tolerance" | "check --junit" | "check --summary" | "check --stick-slope" | "check --normal-stiffness" | "check --held-at" | "check --read-as" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --junit --summary --stick-slope --normal-stiffness --held-at --read-as --json --quiet" ;;
