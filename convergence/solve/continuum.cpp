@@ -157,7 +157,7 @@ ProvenAnswer solve_until_proven(Scene scene, double width,
                                 const std::function<SolvedScene(const Scene&)>& solve) {
   constexpr int kMaxAttempts = 6;
   constexpr double kMargin = 1.2;  // the width falls with the cells' size, or a little faster
-  ProvenAnswer answer{.account = {{"wanted", width}, {"attempts", Json::array()}}};
+  ProvenAnswer answer{scene, {}, {{"wanted", width}, {"attempts", Json::array()}}, ""};
   std::string not_reached = fmt::format("the interval is too wide after {} meshes", kMaxAttempts);
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     try {

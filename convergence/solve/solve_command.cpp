@@ -107,13 +107,14 @@ void add_stress_options(CLI::App& command, StressFiles& stresses) {
   CLI::Option* const depths =
       command
           .add_option("--depths", stresses.depth_words,
-                      "depths below the surface, in m or with a unit: 20um,\"0.1 mm\"")
+                      "depths below the surface, in m, with a unit or over a Hertzian contact's radius: "
+                      "20um,\"0.1 mm\",0.5a; 0.02a..2a:32 are 32 depths with equal ratios")
           ->delimiter(',');
   CLI::Option* const file = command.add_option(
       "--stresses", stresses.file,
-      "write the stresses below the surface at --depths, of a history after the last step: .h5, .csv or "
-      ".vti; of several depths each to its own file, where the name holds {depth}; of both bodies where it "
-      "holds {body}");
+      "write the stresses below the surface at --depths, of a history after the last step: .vtr, one volume "
+      "for ParaView; or .h5, .csv or .vti, of several depths each to its own file, where the name holds "
+      "{depth}; of both bodies where it holds {body}");
   file->needs(depths);
   depths->needs(file);
   const auto add_coefficient = [&](const char* name, std::optional<double>& coefficient, const char* help) {
@@ -231,8 +232,12 @@ SolveRequest request_of(const CLI::App& command, SolveWords words) {
   require_output("--fields", request.files.fields);
   for (std::size_t d = 0; d < request.stresses.depths.size(); ++d) {
     for (const solver::Body body : request.stresses.bodies(request.scene)) {
-      require_input_kept("--stresses", request.stresses.name(d, body), input_files(request.scene));
-      require_output("--stresses", request.stresses.name(d, body));
+      const std::string file = request.stresses.name(d, body);
+      require_input_kept("--stresses", file, input_files(request.scene));
+      require_output("--stresses", file);
+      if (std::filesystem::path(file).lexically_normal() ==
+          std::filesystem::path(request.files.fields).lexically_normal())
+        throw InputError("--stresses " + file, "is the file of --fields too; allowed: another name");
     }
   }
   require_output("--loop", request.files.loop);

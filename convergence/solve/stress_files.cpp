@@ -2,13 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "convergence/results/make_record.hpp"
+#include "convergence/solve/stress_volume.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/units.hpp"
+#include "solver/input/whole_file.hpp"
+#include "solver/model/make_model.hpp"
 #include "solver/stresses/subsurface_stresses.hpp"
 
 namespace slipstick::convergence {
@@ -27,7 +31,43 @@ std::string with(std::string name, std::string_view mark, const std::string& wor
   return at == std::string::npos ? name : name.replace(at, mark.size(), word);
 }
 
+/// A depth in m, with its unit, or over the radius of a Hertzian contact, as 0.4a.
+double depth_of(const std::string& word, const solver::Scene& scene) {
+  std::optional<double> depth = solver::parse_number(word, 0);
+  if (!depth && word.ends_with('a')) {
+    depth = solver::parse_number(std::string_view(word).substr(0, word.size() - 1), 0);
+    const solver::Model model = solver::make_model(scene);
+    if (depth && !model.hertz)
+      throw InputError("--depths " + word,
+                       "allowed: lengths; the contact's radius is not known before the solve");
+    if (depth) *depth *= std::sqrt(model.hertz->semi_axis_1 * model.hertz->semi_axis_2) * model.length_unit;
+  }
+  if (!depth) depth = solver::Units().read(word, "m");
+  if (!depth || !(*depth > 0.0) || !std::isfinite(*depth))
+    throw InputError(
+        "--depths " + word,
+        "allowed: depths above zero in m, with a unit, as \"20 um\", or over a Hertzian contact's "
+        "radius, as 0.4a; FROM..TO:N for N depths whose ratios are equal");
+  return *depth;
+}
+
+/// Adds the depths of a word, FROM..TO:N or one depth.
+void read(const std::string& word, const solver::Scene& scene, std::vector<double>& depths) {
+  const auto dots = word.find("..");
+  const auto colon = word.rfind(':');
+  if (dots == std::string::npos || colon == std::string::npos || colon < dots)
+    return depths.push_back(depth_of(word, scene));
+  const auto count = solver::parse_number(word.substr(colon + 1), 0);
+  if (!count || !(*count >= 2.0 && *count <= 10000.0) || *count != std::floor(*count))
+    throw InputError("--depths " + word, "allowed: FROM..TO:N with a whole number N from 2 to 10000");
+  const double from = depth_of(word.substr(0, dots), scene);
+  const double ratio = depth_of(word.substr(dots + 2, colon - dots - 2), scene) / from;
+  for (double i = 0.0; i < *count; ++i) depths.push_back(from * std::pow(ratio, i / (*count - 1.0)));
+}
+
 }  // namespace
+
+bool StressFiles::is_volume() const { return file.ends_with(".vtr"); }
 
 std::string StressFiles::name(std::size_t depth, solver::Body body) const {
   return with(with(file, kDepthNumber, std::to_string(depth + 1)), kBody, word(body));
@@ -42,18 +82,19 @@ std::vector<solver::Body> StressFiles::bodies(const solver::Scene& scene) const 
 }
 
 void StressFiles::read_depths(const solver::Scene& scene) {
-  solver::require_field_format(file, "--stresses");
-  for (const std::string& word : depth_words) {
-    const auto in_metres = solver::parse_number(word, 0);
-    const double depth = in_metres ? *in_metres : solver::Units().read(word, "m").value_or(NAN);
-    if (!(depth > 0.0) || !std::isfinite(depth))
-      throw InputError("--depths " + word,
-                       "allowed: a depth above zero in m, or with its unit, as \"20 um\"");
-    depths.push_back(depth);
-  }
-  if (depths.size() > 1 && file.find(kDepthNumber) == std::string::npos) {
-    throw InputError("--stresses " + file,
-                     "allowed: a name with {depth}, since each of several depths has its own file");
+  if (!is_volume()) solver::require_field_format(file, "--stresses");
+  for (const std::string& word : depth_words) read(word, scene, depths);
+  if (is_volume()) {
+    std::vector<double> ascending = depths;
+    std::ranges::sort(ascending);
+    if (std::ranges::adjacent_find(ascending) != ascending.end() ||
+        file.find(kDepthNumber) != std::string::npos)
+      throw InputError("--stresses " + file,
+                       "allowed: a volume without {depth} in its name, and each depth once");
+  } else if (depths.size() > 1 && file.find(kDepthNumber) == std::string::npos) {
+    throw InputError(
+        "--stresses " + file,
+        "allowed for several depths: a volume, as stress.vtr, or a name with {depth}: a file a depth");
   }
   if (!solver::is_bare(scene)) {
     throw InputError(scene.source.string(),
@@ -76,13 +117,22 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
   const auto& material = body == solver::Body::upper ? scene.upper : scene.lower;
   solver::SubsurfaceStresses stresses(solution, material.poisson_ratio, body, solution.threads);
   solver::LargestStresses largest;
-  for (std::size_t d = 0; d < files.depths.size(); ++d) {
-    const solver::StressPlane plane = stresses.at(files.depths[d]);
+  const auto plane_at = [&](double depth) {
+    solver::StressPlane plane = stresses.at(depth);
     largest.include(plane, grid);
+    return plane;
+  };
+  if (files.is_volume()) {
+    const std::string file = files.name(0, body);
+    solver::write_whole_file(
+        file, [&](std::FILE* stream) { write_stress_volume(stream, file, grid, files.depths, plane_at); });
+  }
+  for (std::size_t d = 0; d < files.depths.size() && !files.is_volume(); ++d) {
+    const solver::StressPlane plane = plane_at(files.depths[d]);
     std::vector<solver::Column> columns{{"x1", solver::cell_x1(grid)}, {"x2", solver::cell_x2(grid)}};
-    constexpr std::array kNames{"s11", "s22", "s33", "s12", "s13", "s23"};
-    for (std::size_t a = 0; a < kNames.size(); ++a) columns.push_back({kNames[a], plane.stress[a]});
-    columns.push_back({"von_mises", solver::von_mises(plane.stress)});
+    for (std::size_t a = 0; a < plane.stress.size(); ++a)
+      columns.push_back({kStressNames[a], plane.stress[a]});
+    columns.push_back({kStressNames.back(), solver::von_mises(plane.stress)});
     solver::write_fields(files.name(d, body), grid, columns, Eigen::ArrayXd::Ones(grid.cells()));
   }
   const auto json = [](const solver::LargestStresses::Place& place) {

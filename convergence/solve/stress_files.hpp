@@ -10,14 +10,15 @@
 
 namespace slipstick::convergence {
 
-/// Files that get the stresses below the surface, one for each depth.
+/// Files that get the stresses below the surface: one volume, or one for each depth.
 struct StressFiles {
-  /// The name holds "{depth}" where there are several, and "{body}" for both bodies; empty: none.
+  /// The name holds "{depth}" where there are several and no volume, "{body}" for both bodies; empty: none.
   std::string file;
-  std::vector<std::string> depth_words;  ///< as --depths takes them: in m, or with a unit
+  std::vector<std::string> depth_words;  ///< as --depths takes them: depth_of() in the source
   std::vector<double> depths = {};       ///< m, by read_depths()
   solver::FatigueCoefficients fatigue = {};
 
+  bool is_volume() const;                                        ///< by the ending .vtr
   std::string name(std::size_t depth, solver::Body body) const;  ///< of the file of depths[depth]
   /// The lower one, the upper one if the lower is rigid, or both where the name holds "{body}".
   std::vector<solver::Body> bodies(const solver::Scene& scene) const;

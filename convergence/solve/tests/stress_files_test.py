@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import re
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +20,20 @@ def table(file):
     with open(file) as stream:
         rows = list(csv.DictReader(stream))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def volume(file):
+    """Coordinates, and each field by x3, x2 and x1."""
+    data = Path(file).read_bytes()
+    start = data.index(b"_", data.index(b"<AppendedData")) + 1
+    header = data[:start].decode()
+    axes = [np.array(re.search(f'Name="{name}"[^>]*>([^<]*)<', header)[1].split(), float) for name in ("x1", "x2", "x3")]
+    fields = {}
+    for name, offset in re.findall(r'Name="(\w+)" format="appended" offset="(\d+)"', header):
+        at = start + int(offset)
+        size = int.from_bytes(data[at:at + 8], sys.byteorder)
+        fields[name] = np.frombuffer(data, np.float32, size // 4, at + 8).reshape([len(axis) for axis in reversed(axes)])
+    return *axes, fields
 
 
 def tensors(cells):
@@ -109,11 +125,33 @@ class StressFiles(ProgramTest):
         np.testing.assert_allclose(sum(twisted), 2 * pressed, rtol=0, atol=1e-9 * np.abs(pressed).max())
         self.assertGreater(np.abs(twisted[0] - pressed).max(), 0.01 * np.abs(pressed).max())
 
+    def test_a_volume_has_the_stresses_of_all_depths(self):
+        """In any order of depths, which are equal in ratios and over the radius of Hertz."""
+        result = self.solved(SPHERE, "2e-4,0.1a..0.4a:3", file="s.vtr")
+        depths = np.array([2e-4, 0.1 * RADIUS, 0.2 * RADIUS, 0.4 * RADIUS])
+        np.testing.assert_allclose(result["depths"], depths, rtol=1e-11)
+        x1, x2, x3, fields = volume("s.vtr")
+        np.testing.assert_array_equal(x3, np.sort(result["depths"]))
+        self.solved(SPHERE, ",".join(map(repr, result["depths"])))
+        for number, depth in enumerate(result["depths"], 1):
+            cells = table(f"s{number}.csv")
+            at = np.ix_([np.flatnonzero(x3 == depth)[0]], range(len(x2)), range(len(x1)))
+            self.assertEqual(list(cells["x1"][:len(x2)]), [x1[0]] * len(x2))
+            for name in (*NAMES, "von_mises"):
+                np.testing.assert_allclose(fields[name][at][0].T.ravel(), cells[name], rtol=1e-6, atol=1e-7 * PEAK, err_msg=name)
+            self.assertEqual(list(cells["x2"][:len(x2)]), list(x2))
+
     def test_bad_input_is_refused(self):
-        for depths in ("0", "-1e-4", "nan", "inf", "1e-4 Pa", "deep"):
-            self.assertIn("allowed: a depth above zero", self.solved(SHORT_SCENE, depths, code=2))
-        for file, message in (("s.csv", "{depth}"), ("s{depth}.png", ".vti")):
-            self.assertIn(message, self.solved(SHORT_SCENE, "1e-4,2e-4", file=file, code=2))
+        for depths in ("0", "-1e-4", "nan", "inf", "1e-4 Pa", "deep", "a", "0a", "1um..-1um:3"):
+            self.assertIn("allowed: depths above zero", self.solved(SHORT_SCENE, depths, code=2))
+        for number in ("", "1", "2.5", "x", "1e9"):
+            self.assertIn("FROM..TO:N with", self.solved(SHORT_SCENE, "1um..2um:" + number, file="s.vtr", code=2))
+        for depths, file, message in (("1e-4,2e-4", "s.csv", "{depth}"), ("1e-4,2e-4", "s{depth}.png", ".vti"),
+                                      ("1e-4,1e-4", "s.vtr", "each depth once"), ("1e-4", "s{depth}.vtr", "without {depth}")):
+            self.assertIn(message, self.solved(SHORT_SCENE, depths, file=file, code=2))
+        self.assertIn("is the file of --fields", self.solved(SHORT_SCENE, "1e-4", "--fields", "./s.csv", file="s.csv", code=2))
+        self.assertIn("not known before the solve", self.run_program("solve", SCENES / "cone.toml", "--stresses", "s.csv",
+                                                                     "--depths", "0.4a", code=2))
         self.assertIn("slipstick exact --at", self.solved(SHORT_SCENE, "1e-4", "--model", "exact", code=2))
         self.assertIn("without a layer", self.run_program("solve", SCENES / "coated_sphere.toml", "--stresses", "s.csv",
                                                          "--depths", "1e-4", code=2))
