@@ -58,6 +58,9 @@ std::vector<StressRow> rows(const AtPoint& point) {
   list.push_back({"von_mises", "von Mises stress", "sigma_v/p0", von_mises});
   list.push_back({"tresca", "Tresca stress", "(s1 - s3)/p0", tresca});
   list.push_back({"tension", "principal stress", "s1/p0", tension});
+  if (point.yield_pressure)
+    list.push_back({"yield_pressure", "p0 at first yield", "Pa", *point.yield_pressure});
+  if (point.yield_load) list.push_back({"yield_load", "load at first yield", "N", *point.yield_load});
   return list;
 }
 

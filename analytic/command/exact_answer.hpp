@@ -78,6 +78,8 @@ struct AtPoint {
   PressureStress pressure;
   TorsionStress torsion;
   std::optional<Severity> severity = {};
+  std::optional<double> yield_pressure = {};  ///< Pa: p0 at first yield
+  std::optional<double> yield_load = {};      ///< N: the normal load, at the same M/M_lim
 };
 using AtPoints = std::vector<AtPoint>;
 AtPoints at_points(const StressField& field, const std::vector<BodyPoint>& points, double poisson,

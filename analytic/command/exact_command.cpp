@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -60,6 +61,7 @@ struct Options {
   std::optional<double> effective_modulus;
   std::vector<double> shape;
   std::optional<double> friction;
+  std::optional<double> yield_stress;
   std::optional<double> shear_modulus;
 };
 
@@ -95,6 +97,8 @@ std::vector<double> radii(const Options& options) {
 ExactContact contact(const Options& options) {
   if (options.friction && !options.normal_load && options.at.empty())
     throw std::domain_error("--friction: allowed: with --normal-load or --at");
+  if (options.yield_stress && std::ranges::find(options.at, kMostStressed) == options.at.end())
+    throw std::domain_error("--yield-stress: allowed with --at largest");
   if (!options.normal_load)
     return {.name = options.profile,
             .profile = naming("--profile", [&] { return find_profile(options.profile); }),
@@ -118,11 +122,25 @@ std::size_t given(const Options& options) {
   throw std::invalid_argument("exact: no state given");
 }
 
+/// The normal load at which p0 has this value. Where the profile is the same under every load, p0 goes like a
+/// power of the load.
+double load_of(double pressure, const Options& options, const ExactContact& exact) {
+  const PressedContact twice =
+      press(options.profile, {2.0 * exact.units->load, *options.effective_modulus, options.shape});
+  if (twice.profile.profile->name() != exact.profile.profile->name())
+    throw std::domain_error(fmt::format(
+        "profile {}; allowed with --yield-stress: hertz, power:N, which keep their form under every load",
+        options.profile));
+  const double before = exact.units->indentation.reference_pressure;
+  const double power = std::log(2.0) / std::log(twice.indentation.reference_pressure / before);
+  return exact.units->load * std::pow(pressure / before, power);
+}
+
 /// The stresses at the points asked for. front: the radius at which slip ends.
 template <class State>
-AtPoints stresses(const Options& options, const State& state, double front, const Profile& profile) {
+AtPoints stresses(const Options& options, const State& state, double front, const ExactContact& exact) {
   return naming("--at", [&] {
-    const StressField field(state, profile);
+    const StressField field(state, *exact.profile.profile);
     std::vector<BodyPoint> points;
     for (const std::string& text : options.at) {
       if (text == kMostStressed) {
@@ -136,7 +154,13 @@ AtPoints stresses(const Options& options, const State& state, double front, cons
       points.push_back(
           {number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
     }
-    return at_points(field, points, options.poisson, options.friction);
+    AtPoints found = at_points(field, points, options.poisson, options.friction);
+    for (std::size_t i = 0; i < found.size() && options.yield_stress; ++i) {
+      if (options.at[i] != kMostStressed) continue;
+      found[i].yield_pressure = *options.yield_stress / found[i].severity->von_mises;
+      if (exact.units) found[i].yield_load = load_of(*found[i].yield_pressure, options, exact);
+    }
+    return found;
   });
 }
 
@@ -156,7 +180,7 @@ int run(const Options& options, std::ostream& out, Json& result) {
     LoadingHistory history(profile);
     for (CyclePoint& point : answer.history) {
       history.load_to(point.state.moment_ratio);
-      point.stresses = stresses(options, history, history.state().stick_ratio, profile);
+      point.stresses = stresses(options, history, history.state().stick_ratio, exact);
     }
     return give(answer, out, result);
   }
@@ -175,12 +199,12 @@ int run(const Options& options, std::ostream& out, Json& result) {
     return naming(from.option, [&] { return from.state(value, any); });
   };
   StateAnswer answer = answer_state(exact, state_of, at, options.unload_to);
-  answer.stresses = stresses(options, answer.numbers.state, answer.numbers.state.stick_ratio, profile);
+  answer.stresses = stresses(options, answer.numbers.state, answer.numbers.state.stick_ratio, exact);
   if (answer.unloaded) {
     LoadingHistory history(profile);
     history.load_to(answer.numbers.state.moment_ratio);
     history.load_to(*options.unload_to);
-    answer.unloaded->stresses = stresses(options, history, history.state().stick_ratio, profile);
+    answer.unloaded->stresses = stresses(options, history, history.state().stick_ratio, exact);
   }
   return give(answer, out, result);
 }
@@ -208,6 +232,13 @@ void add_state_options(CLI::App& exact, Options& options) {
       ->check(CLI::Range(-1.0, 0.5))
       ->needs(at)
       ->capture_default_str();
+  exact
+      .add_option("--yield-stress", options.yield_stress,
+                  "Pa, in tension: p0 at which the point of --at largest yields, with --normal-load also the "
+                  "load, at "
+                  "the same M/M_lim")
+      ->check(CLI::PositiveNumber)
+      ->needs(at);
   exact.add_option("--certified", options.certified, "print each number with N proven digits, 15..100")
       ->check(CLI::Range(15, 100))
       ->excludes(history)

@@ -168,6 +168,19 @@ class Exact(ProgramTest):
         for key in ("moment_ratio", "twist", "stick_ratio", "traction"):
             self.assertEqual(history[5][key], history[0][key], f"the loop closes: {key}")
 
+    def test_the_load_at_first_yield_makes_the_largest_stress_the_yield_stress(self):
+        """Hertz: p0^3 = 6 W E*^2/(pi^3 R^2). The other shape is pressed again, by the load that was found."""
+        for profile, shape in (("hertz", "0.018"), ("power:4", "2e4")):
+            state = f"--moment-ratio 0.8 --friction 0.4 --profile {profile} --at 0,0.3 --at largest --effective-modulus 115e9 --shape {shape}"
+            other, most = self.json(f"{state} --normal-load 1000 --yield-stress 300e6")["stresses"]
+            self.assertNotIn("yield_load", other)
+            self.assertLess(abs(most["yield_pressure"] * most["von_mises"] / 300e6 - 1), 1e-14)
+            again = self.json(f"{state} --normal-load {most['yield_load']!r}")
+            self.assertLess(abs(again["units"]["reference_pressure"] / most["yield_pressure"] - 1), 1e-13, profile)
+            if profile == "hertz":
+                closed = math.pi**3 * 0.018**2 * most["yield_pressure"]**3 / (6 * 115e9**2)
+                self.assertLess(abs(most["yield_load"] / closed - 1), 1e-13)
+
     def test_stresses_below_the_surface(self):
         state = "--moment-ratio 0.9 --at 0.5,0 --at 0,0.5 --radius 0.5"
         found = self.json(state)
@@ -189,7 +202,9 @@ class Exact(ProgramTest):
         self.near(back[0]["sigma_tz"], -surface["sigma_tz"], 1e-13)
         for words, *says in (("--at 0.5", "--at"), ("--at 0.5,-1", "--at", "z/a = -1"), ("--at 0.5,1,2", "1,2"), ("--at 1,nan", "z/a = nan"),
                              ("--at 1,0 --profile flat_punch", "infinite there"), ("--at 0,1 --certified 20", ),
-                             ("--friction 0.3", "--at")):
+                             ("--friction 0.3", "--at"), ("--at 0,0.5 --friction 0.3 --yield-stress 3e8", "--at largest"),
+                             ("--at largest --friction 0.3 --yield-stress 3e8 --profile rounded_punch --normal-load 1000 "
+                              "--effective-modulus 1e11 --shape 1e-3,1e-2", "hertz, power:N")):
             self.refused(f"--moment-ratio 0.5 {words}", *says)
 
     def test_units_are_hertzs(self):

@@ -72,7 +72,8 @@ class Results(unittest.TestCase):
 
     def test_exact(self):
         units = ["--normal-load", 1000, "--effective-modulus", 1e11, "--friction", 0.1, "--shear-modulus", 4e10]
-        self.run_and_check("exact", "--moment-ratio", 0.9, "--radius", "0,0.5,1", *units, "--shape", 0.018, "--at", "0.5,0.2")
+        self.run_and_check("exact", "--moment-ratio", 0.9, "--radius", "0,0.5,1", *units, "--shape", 0.018, "--at", "0.5,0.2",
+                           "--at", "largest", "--yield-stress", 3e8)
         self.run_and_check("exact", "--profile", "flat_punch", "--stick-ratio", 0.5, "--radius", 1,
                            "--unload-to", 0.2, "--at", "0.5,0.2")
         self.run_and_check("exact", "--profile", "cone", "--history", "0.8,-0.8", "--points", 3, "--radius", "0,0.5",

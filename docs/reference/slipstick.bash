@@ -8,8 +8,8 @@ _slipstick() {
     words="exact solve check law study gate hard run digits report bench compare --help --version"
   else
     case "${COMP_WORDS[1]} $previous" in
-      "exact --moment-ratio" | "exact --moment-deficit" | "exact --stick-ratio" | "exact --stick-complement" | "exact --twist" | "exact --history" | "exact --points" | "exact --unload-to" | "exact --at" | "exact --poisson" | "exact --certified" | "exact --radius" | "exact --profile" | "exact --normal-load" | "exact --effective-modulus" | "exact --shape" | "exact --friction" | "exact --shear-modulus" | "exact --json") return ;;
-      "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --at --poisson --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
+      "exact --moment-ratio" | "exact --moment-deficit" | "exact --stick-ratio" | "exact --stick-complement" | "exact --twist" | "exact --history" | "exact --points" | "exact --unload-to" | "exact --at" | "exact --poisson" | "exact --yield-stress" | "exact --certified" | "exact --radius" | "exact --profile" | "exact --normal-load" | "exact --effective-modulus" | "exact --shape" | "exact --friction" | "exact --shear-modulus" | "exact --json") return ;;
+      "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --at --poisson --yield-stress --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
       "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "solve --accuracy-of") words="twist traction stick_radius" ;;
       "solve --program" | "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --proven" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --loop" | "solve --depths" | "solve --stresses" | "solve --dang-van" | "solve --findley" | "solve --memory-limit" | "solve --json") return ;;

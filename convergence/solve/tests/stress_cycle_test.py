@@ -73,8 +73,8 @@ class StressCycle(ProgramTest):
         self.assertNotIn("findley", found)
 
     def test_both_parameters_are_the_largest_of_all_cells(self):
-        """Of a moment and a force that alternate out of phase. The smallest ball is sought among all spheres through some states,
-        planes are sampled at random."""
+        """A moment and a force alternate out of phase. The smallest ball is sought among all spheres through some states; planes are
+        sampled at random."""
         loads = ((0.3, 40), (-0.3, 40), (-0.3, -40), (0.3, -40))
         steps = [f"[[step]]\nmoment_ratio = {moment}\nforce = [{force}, 0]\n" for moment, force in loads]
         text = SHORT_SCENE.replace("moment_ratio = 0.5\n", "").replace("[32, 32]", "[16, 16]")
