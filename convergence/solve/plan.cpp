@@ -70,8 +70,8 @@ std::size_t states_of(const StressFiles& files, const Scene& scene) {
   return files.fatigue.any() ? scene.steps.size() : 0;
 }
 
-/// CPU seconds for a depth on kTimedCells^2 cells, under Hertz' pressure in torsion: the mean of at most
-/// four.
+/// CPU seconds for a depth on kTimedCells^2 cells, under Hertz' pressure in torsion: the mean of the
+/// first four.
 double timed_seconds(StressFiles files, const Scene& scene, const solver::Grid& grid) {
   constexpr double kCells = kTimedCells;
   solver::Solution solution;
@@ -85,20 +85,15 @@ double timed_seconds(StressFiles files, const Scene& scene, const solver::Grid& 
   std::vector<solver::SolutionFields> cycle(states_of(files, scene), solution);
   for (std::size_t i = 0; i < cycle.size(); i += 2) cycle[i].traction *= -1.0;
   const TemporaryFolder folder;
-  const std::string ending = std::filesystem::path(files.file).extension();
-  const std::string name = files.bodies(scene).size() > 1 ? "{depth}{body}" : "{depth}";
-  files.file = folder / (name + ending).c_str();
-  const std::vector<double> depths = files.depths;
-  const std::size_t timed = std::min<std::size_t>(4, depths.size());
-  for (std::size_t d = 0; d < timed; ++d) files.depths[d] = depths[d * depths.size() / timed];
-  files.depths.resize(timed);
+  files.file = folder / std::filesystem::path(files.file).filename().c_str();
+  files.depths.resize(std::min<std::size_t>(4, files.depths.size()));
   std::clock_t quickest = std::numeric_limits<std::clock_t>::max();
   for (int round = 0; round < 3; ++round) {
     const std::clock_t start = std::clock();
     write_stresses(files, scene, solution, cycle);
     quickest = std::min(std::clock() - start, quickest);
   }
-  return static_cast<double>(quickest) / CLOCKS_PER_SEC / static_cast<double>(timed);
+  return static_cast<double>(quickest) / CLOCKS_PER_SEC / static_cast<double>(files.depths.size());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ template <int D>
 using Points = std::vector<Eigen::Matrix<double, D, 1>>;
 
 /// Centre and radius of the smallest ball that holds all points: the convex combination of them with the
-/// largest deviation, by an active set. The points lie within the radius up to a relative rounding of 1e-10.
+/// largest deviation, by an active set. The points lie within the radius up to a relative rounding of 1e-12.
 template <int D>
 std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& points) {
   Points<D> active{points.front()};
@@ -25,7 +25,7 @@ std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& po
     const auto farthest = std::ranges::max(points, {}, distance);
     const double square = distance(active.front());
     const bool stops = active.size() > D + 1 || round > 10 * points.size();  // by rounding
-    if (stops || !(distance(farthest) > (1.0 + 1e-10) * square))
+    if (stops || !(distance(farthest) > (1.0 + 1e-12) * square))
       return {center, std::sqrt(distance(farthest))};
     active.push_back(farthest);
     weights.push_back(0.0);
