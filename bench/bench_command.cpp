@@ -8,7 +8,6 @@
 
 #include "bench/commands.hpp"
 #include "bench/plane/speed_error.hpp"
-#include "bench/scaling/crossovers.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/programs/python_script.hpp"
@@ -51,7 +50,7 @@ struct BenchRequest {
   bool quick = false;
 };
 
-/// Writes the file from which `solve --accuracy` picks mesh and tolerance.
+/// Writes the file from which `solve --accuracy` picks mesh and tolerance. plane: judged.
 void keep_accuracy_data(const std::string& file, const Json& plane) {
   const std::string origin =
       fmt::format("Measured by slipstick bench on {}, {:%Y-%m-%d}.",
@@ -77,10 +76,8 @@ void time_parts(const BenchRequest& request, const fs::path& data, std::ostream&
                                                                    {"folder", (data / "finished").string()}});
   result = timed.result;
   convergence::write_json_file(data / "timings.json", result);
-  Json laws = timed.rest.at("scaling");
-  laws["crossovers"] = crossovers(timed.rest.at("seconds"));
-  convergence::write_json_file(data / "scaling.json", laws);
-  text << crossovers_text(laws["crossovers"]);
+  convergence::write_json_file(data / "scaling.json", timed.rest.at("scaling"));
+  text << timed.text;
 }
 
 /// Everything, one after the other, and the page. A wheel has no program of Google Benchmark: there only
@@ -101,7 +98,7 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
       convergence::run_package_module("speed.plane", {{"what", "judge"}, {"plane", plane}});
   convergence::write_json_file(data / "plane.json", judged.result);
   if (request.program.empty()) result = judged.result;
-  if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
+  if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, judged.result);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
   text << judged.text << "page: " << (folder / "index.html").string() << '\n';

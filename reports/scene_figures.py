@@ -198,7 +198,7 @@ def operators(page, folder):
     """Whole solves of the scene by direct sums and by convolution."""
     table = [row for row in rows(page, "operators.rows") if row["seconds"] is not None]
     if not table:
-        raise Unavailable("no solve on a small mesh was timed")
+        raise Unavailable(value(page, "operators")["remark"] or "no solve on a small mesh was timed")
     figure, axis = style.panels(1, 1, 3.2)
     looks = {"direct": ("direct summation", dict(color=style.VERMILION, marker="o")),
              "dcfft": ("convolution (DC-FFT)", dict(color=style.BLUE, marker="s"))}

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "bench/timing/checked_solve.hpp"
-#include "convergence/orders/crossover.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
@@ -47,7 +46,7 @@ constexpr std::size_t kMinRepetitions = 3;
 constexpr std::size_t kMaxRepetitions = 9;
 constexpr double kEnoughSeconds = 1.0;
 
-/// The median of repeated times with its 95 % interval.
+/// Each repetition's seconds.
 Json repeated_seconds(const std::function<double()>& work) {
   std::vector<double> seconds;
   double total = 0.0;
@@ -55,8 +54,7 @@ Json repeated_seconds(const std::function<double()>& work) {
     seconds.push_back(work());
     total += seconds.back();
   }
-  const convergence::TypicalSeconds time = convergence::typical(seconds);
-  return {{"median", time.seconds}, {"low", time.low}, {"high", time.high}, {"repetitions", seconds.size()}};
+  return seconds;
 }
 
 double root_mean_square(const std::vector<double>& values) {

@@ -9,8 +9,9 @@
 /// tolerance costs, and the error that it buys. The Python package (slipstick.speed.plane) designs and judges
 /// it.
 ///
-/// The result is docs/schema/plane.schema.json: times in seconds, errors relative, `errors` signed and of
-/// each grid, `error` their root mean square, work and certificate of the first grid, which is the one timed.
+/// The result, judged, is docs/schema/plane.schema.json; before, `seconds` has each repetition. Errors are
+/// relative, `errors` signed and of each grid, `error` their root mean square, work and certificate of the
+/// first grid, which is the one timed.
 namespace slipstick::bench {
 
 using convergence::Json;

@@ -59,12 +59,6 @@ Json to_json(const PageProgram& row) {
   return json;
 }
 
-Json to_json(const OperatorTime& row) {
-  Json json{{"operator", row.kind}, {"cells", row.cells}};
-  set_numbers(json, {{"seconds", row.seconds}, {"low", row.low}, {"high", row.high}});
-  return json;
-}
-
 template <class Part>
 Json list(const std::vector<Part>& parts) {
   Json json = Json::array();
@@ -78,16 +72,10 @@ Json to_json(const Cost& cost) {
   return json;
 }
 
-Json to_json(const OperatorTimes& times) {
-  Json json{{"rows", list(times.rows)}, {"remark", times.remark}};
-  set_numbers(json, {{"cells", times.cells}, {"low", times.low}, {"high", times.high}});
-  return json;
-}
-
 Json to_json(const Costs& costs) {
   Json json{{"cost", to_json(costs.cost)}};
   if (costs.programs) json.emplace("programs", list(*costs.programs));
-  if (costs.operators) json.emplace("operators", to_json(*costs.operators));
+  set(json, "operators", costs.operators);
   return json;
 }
 

@@ -101,30 +101,13 @@ struct PageProgram {
   Number error = {};
 };
 
-/// Median time of one kind of operator on one mesh, with its interval.
-struct OperatorTime {
-  std::string kind = {};
-  double cells = 0.0;
-  Number seconds = {};
-  Number low = {};
-  Number high = {};
-};
-
-/// Direct sums against convolution. cells: along the longer side, where both take the same time.
-struct OperatorTimes {
-  std::vector<OperatorTime> rows = {};
-  Number cells = {};
-  Number low = {};
-  Number high = {};
-  std::string remark = {};
-};
-
 /// The methods, other programs and ways to sum. programs: none where there is none to compare; operators:
-/// none where another program solves the scene.
+/// direct sums against convolution, by slipstick.speed.crossovers; none where another program solves the
+/// scene.
 struct Costs {
   Cost cost = {};
   std::optional<std::vector<PageProgram>> programs = {};
-  std::optional<OperatorTimes> operators = {};
+  std::optional<Json> operators = {};
 };
 
 /// `slipstick bench` without a page.

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
-#include "convergence/orders/crossover.hpp"
+#include "convergence/orders/order.hpp"
+#include "convergence/programs/package_module.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
@@ -82,16 +83,6 @@ void compare(PageProgram& row, const Json& result, const std::vector<std::string
   }
 }
 
-/// seconds: of each repetition.
-OperatorTime operator_time(const std::string& kind, double cells, const std::vector<double>& seconds) {
-  const TypicalSeconds time = typical(seconds);
-  return {.kind = kind,
-          .cells = cells,
-          .seconds = number_or(time.seconds, "it did not solve"),
-          .low = number_or(time.low, "one repetition"),
-          .high = number_or(time.high, "one repetition")};
-}
-
 /// Every method, and the program of the scene if it has one, on several meshes and to several tolerances.
 Cost error_against_time(const PageScene& at, const Reference& reference, const ProcessPool& pool) {
   Cost cost{.number = reference.number,
@@ -155,8 +146,22 @@ std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest&
   return rows;
 }
 
+/// families: of each operator the pairs of cells and seconds of each repetition. Without the Python package
+/// no numbers, and the reason.
+Json operator_times(const Json& families) {
+  try {
+    return run_package_module("speed.crossovers",
+                              {{"families", families}, {"slow", "direct"}, {"quick", "dcfft"}})
+        .result;
+  } catch (const std::runtime_error& failure) {
+    Json none{{"rows", Json::array()}, {"remark", failure.what()}};
+    for (const char* number : {"cells", "low", "high"}) set_missing(none, number, failure.what());
+    return none;
+  }
+}
+
 /// Whole solves with direct sums and with convolution on small meshes of the scene.
-OperatorTimes direct_against_dcfft(const PageScene& at, const ProcessPool& pool) {
+Json direct_against_dcfft(const PageScene& at, const ProcessPool& pool) {
   constexpr const char* kKinds[] = {"dcfft", "direct"};
   std::vector<RunSpec> runs;
   for (const char* kind : kKinds) {
@@ -170,24 +175,16 @@ OperatorTimes direct_against_dcfft(const PageScene& at, const ProcessPool& pool)
     }
   }
   const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
-  OperatorTimes times;
-  std::map<std::string, Family> families;
+  Json families;
   auto result = results.begin();
   for (const char* kind : kKinds) {
     for (const double cells : at.size.operator_cells) {
       std::vector<double> seconds;
       for (int k = 0; k < at.size.repetitions; ++k) seconds.push_back(seconds_of(*result++));
       families[kind].push_back({cells, seconds});
-      times.rows.push_back(operator_time(kind, cells, seconds));
     }
   }
-  const Crossover crossover = find_crossover(families["direct"], families["dcfft"]);
-  const std::string outside = crossover.remark.empty() ? "outside the measured sizes" : crossover.remark;
-  times.cells = number_or(crossover.cells, outside);
-  times.low = number_or(crossover.low, outside);
-  times.high = number_or(crossover.high, outside);
-  times.remark = crossover.remark;
-  return times;
+  return operator_times(families);
 }
 
 std::string shown_number(double value, const char* unit) {
@@ -235,10 +232,11 @@ std::string costs_text(const SceneCosts& costs) {
                         row.status == "converged" ? "" : row.status);
   }
   if (!operators) return text;
-  text += std::isfinite(operators->cells)
+  const double crossover = number_at(*operators, "cells");
+  text += std::isfinite(crossover)
               ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n",
-                            operators->cells.value)
-              : fmt::format("  convolution against direct summation: {}\n", operators->remark);
+                            crossover)
+              : fmt::format("  convolution against direct summation: {}\n", word(*operators, "remark"));
   return text;
 }
 

@@ -45,9 +45,8 @@ TEST(PlanePoint, HasTheErrorsOfItsGrids) {
   double sum = 0.0;
   for (const Json& error : point["errors"]["twist"]) sum += error.get<double>() * error.get<double>();
   EXPECT_NEAR(point["error"]["twist"].get<double>(), std::sqrt(sum / 4.0), 1e-15);
-  EXPECT_GT(point["seconds"]["median"].get<double>(), 0.0);
-  EXPECT_LE(point["seconds"]["low"], point["seconds"]["median"]);
-  EXPECT_EQ(point["seconds"]["repetitions"], 9);  // as quick work is repeated
+  EXPECT_EQ(point["seconds"].size(), 9U);  // as quick work is repeated
+  for (const Json& seconds : point["seconds"]) EXPECT_GT(seconds.get<double>(), 0.0);
   // 20 to 18 of 24 cells: the margin is two cells on each side, and grids grow by up to 1.5 cells.
   EXPECT_GT(point["contact_cells"].get<double>(), 18.0);
   EXPECT_LT(point["contact_cells"].get<double>(), 20.2);

@@ -54,6 +54,15 @@ def judged(*points):
 
 
 class JudgementTest(unittest.TestCase):
+    def test_makes_repeated_times_a_median_with_its_interval(self):
+        points = [{"seconds": [1.0, 4.0]}, {"seconds": None}]
+        plane.put_medians({"scenes": [{"points": points, "exact": {"seconds": [3.0, 2.0, 5.0]}}]})
+        self.assertAlmostEqual(points[0]["seconds"]["median"], 2.0, delta=1e-12)  # of the logarithms
+        self.assertLess(points[0]["seconds"]["low"], 1.0)
+        self.assertGreater(points[0]["seconds"]["high"], 4.0)
+        self.assertEqual(points[0]["seconds"]["repetitions"], 2)
+        self.assertIsNone(points[1]["seconds"])
+
     def test_finds_envelope_times_and_what_is_not_timed(self):
         wrong = {**point("paper", 256, 1e-6, 0.001, 0.001, 0.001), "seconds": None, "not_timed": "twist error 0.06 above 0.001"}
         made, rows = judged(point("coulomb", 64, 2e-3, 1.0, 1.0, 1.0), point("coulomb", 128, 5e-4, 4.0, 4.0, 4.0),

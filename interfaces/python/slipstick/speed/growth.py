@@ -25,16 +25,29 @@ THEORY = {"application/dense": "N^4", "application/direct": "N^4", "application/
           "setup/dcfft": "N^2 log N", "normal/": "N^2 log N", "solve/coulomb": "N^2 log N"}
 
 
-def typical(seconds: list[float]) -> tuple[float, float, float]:
-    """The median of repetitions with its 95 % interval: Student's, of their logarithms, widened as a median is less certain
-    than a mean (the median of many normal deviates has sqrt(pi/2) of their mean's standard error). Repetitions without a
-    positive number are ignored; NaN: there are fewer than two."""
+def log_time(seconds: list[float]) -> tuple[float, float, int] | None:
+    """The median of the repetitions' logarithms, its standard error (NaN: one repetition) and the degrees of freedom that it
+    rests on; None: no repetition is a positive number. The median of many normal deviates has sqrt(pi/2) of their mean's
+    standard error."""
     logs = [math.log(time) for time in seconds if is_valid_time(time)]
     if not logs:
+        return None
+    error = math.sqrt(0.5 * math.pi / len(logs)) * statistics.stdev(logs) if len(logs) > 1 else math.nan
+    return statistics.median(logs), error, len(logs) - 1
+
+
+def quantile(freedom: int) -> float:
+    """Student's, at the upper end of a 95 % interval; NaN without a degree of freedom."""
+    return float(stdtrit(freedom, UPPER_QUANTILE)) if freedom > 0 else math.nan
+
+
+def typical(seconds: list[float]) -> tuple[float, float, float]:
+    """The median of repetitions with its 95 % interval: Student's, of their logarithms. Repetitions without a positive number are
+    ignored; NaN: there are fewer than two."""
+    time = log_time(seconds)
+    if time is None:
         return math.nan, math.nan, math.nan
-    median, half = statistics.median(logs), math.nan
-    if len(logs) > 1:
-        half = math.sqrt(0.5 * math.pi / len(logs)) * statistics.stdev(logs) * float(stdtrit(len(logs) - 1, UPPER_QUANTILE))
+    median, half = time[0], time[1] * quantile(time[2])
     return math.exp(median), math.exp(median - half), math.exp(median + half)
 
 
@@ -52,7 +65,7 @@ def fit_power_law(family: Family) -> dict[str, Any]:
     if len(cells) < MIN_SIZES:
         return {**law, "why_not": f"{len(cells)} sizes from {least:g} cells up, {MIN_SIZES} are needed"}
     (slope, start), covariance = numpy.polyfit(numpy.log(cells), numpy.log([times[size] for size in cells]), 1, cov=True)
-    half = float(stdtrit(len(cells) - 2, UPPER_QUANTILE)) * math.sqrt(covariance[0, 0])
+    half = quantile(len(cells) - 2) * math.sqrt(covariance[0, 0])
     return {**law, "exponent": float(slope), "low": slope - half, "high": slope + half, "constant": math.exp(start),
             "cells": cells}
 

@@ -129,6 +129,17 @@ def _time_to(points: list[Point], quantity: str, method: str, error: float) -> d
     return {**row, "seconds": None, "seconds_reason": why, "point": None, "reason": why}
 
 
+def put_medians(plane: dict[str, Any]) -> None:
+    """Replaces repeated times by their median, its 95 % interval and their number."""
+    from .growth import typical  # needs SciPy
+
+    for scene in plane["scenes"]:
+        for timed in (*scene["points"], scene["exact"]):
+            if timed["seconds"] is not None:
+                median, low, high = typical(timed["seconds"])
+                timed["seconds"] = {"median": median, "low": low, "high": high, "repetitions": len(timed["seconds"])}
+
+
 def judge(plane: dict[str, Any]) -> None:
     """Puts envelopes and times to errors of the measured points into the result."""
     plane["not_timed"] = []
@@ -243,12 +254,13 @@ version = 1
 
 
 def answer(request: dict[str, Any]) -> dict[str, Any]:
-    """The design, or the judgement of its measured points, or data for `solve --accuracy`."""
+    """The design, or the judgement of its measured points, or data for `solve --accuracy` of a judged plane."""
     if request["what"] == "design":
         return {"result": {"loads": design(request["quick"]), "quantities": [
             {"name": name, "label": label} for name, label in QUANTITIES.items()]}}
     plane = request["plane"]
     if request["what"] == "accuracy":
         return {"text": accuracy_toml(accuracy_from_plane(plane), request["origin"])}
+    put_medians(plane)
     judge(plane)
     return {"result": plane, "text": times_text(plane)}

@@ -147,13 +147,13 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     program, what = request["program"], request["what"]
     starter = [request["starter"], "--tied-to", str(os.getpid()), "start"] if request["starter"] else []
     if what == "survey":
-        from . import growth  # needs SciPy
+        from . import crossovers, growth  # need SciPy
 
         file = survey(program, request["filter"], Path(request["folder"]), starter, request["seconds"], request["repetitions"])
         read = timings.from_json(file, "timings.json")
-        seconds = {name: [(cells, [one for one in times if timings.is_valid_time(one)])
-                          for cells, times in growth.seconds_of(own).items()] for name, own in growth.families(read).items()}
-        return {"result": file, "scaling": {"families": growth.scaling(read)}, "seconds": seconds}
+        crossings = crossovers.crossovers({name: growth.seconds_of(own) for name, own in growth.families(read).items()})
+        return {"result": file, "scaling": {"families": growth.scaling(read), "crossovers": crossings},
+                "text": crossovers.crossovers_text(crossings)}
     base, now = request["base"], program if what == "builds" else request["now"]
     pairs = two_builds(base, now, request["filter"]) if what == "builds" else two_methods(program, base, now)
     return compare_pairs(pairs, request["rounds"], compare.Rules(effect=request["effect"]), base, now, starter)
