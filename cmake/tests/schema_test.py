@@ -141,6 +141,13 @@ class Results(unittest.TestCase):
         table = self.file("radii.csv", "r,pressure,q_theta,q_r\n" + rows)
         self.follows(self.run_program("check", SCENES / "paper.toml", table, code=1), "mesh")
 
+    def test_check_of_stresses(self):
+        for columns, force in (("s11,s22,s33,s12,s13,s23", 0), ("s33,s13", 1)):
+            numbers = ",".join("1" * len(columns.split(",")))
+            table = self.file("stresses.csv", f"x1,x2,x3,{columns}\n1e-4,0,2e-4,{numbers}\n0,1e-4,3e-4,{numbers}\n")
+            self.follows(self.run_program("check", SCENES / "paper.toml", table, "--set", "grid.cells=[32,32]",
+                                          "--set", f"load.force=[{force},0]", code=1), "stresses")
+
     def test_check_of_a_loop(self):
         curve = self.run_program("exact", "--history", "0.8,-0.8,0.8")["curve"]
         units = self.run_program("law", SCENES / "paper.toml", "--limit-loads", 3)["units"]

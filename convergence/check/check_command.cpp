@@ -10,6 +10,7 @@
 #include "convergence/check/check.hpp"
 #include "convergence/check/loop_request.hpp"
 #include "convergence/check/mesh_request.hpp"
+#include "convergence/check/stress_request.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/package_module.hpp"
 #include "convergence/results/markup.hpp"
@@ -61,6 +62,17 @@ int judge_file(const CLI::App& command, const CheckRequest& request, std::ostrea
     LoopOptions options{.strict = request.check.strict};
     if (request.check.tolerance) options.tolerance = *request.check.tolerance;
     return run_judge("loops", loop_request(scene, request.field, options), text, result);
+  }
+  if (is_stress_file(request.field, request.check.columns)) {
+    MeshOptions others = request.mesh;
+    others.read_as.clear();
+    if (request.check.twist || request.check.discrete || request.check.pressure_given || others.any()) {
+      throw solver::InputError(request.field,
+                               "has stresses below the surface; allowed: --tolerance, --strict, --columns "
+                               "and --read-as body=lower or body=upper");
+    }
+    return run_judge("subsurface", stress_request(scene, request.field, request.check, request.mesh.read_as),
+                     text, result);
   }
   if (request.mesh.any() || (request.check.columns.empty() && is_mesh_file(request.field))) {
     if (request.check.discrete || request.check.pressure_given || !request.check.columns.empty()) {
@@ -123,15 +135,15 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI::App& app) {
   const auto request = std::make_shared<CheckRequest>();
   CLI::App* const command =
-      app.add_subcommand("check", "Judge a traction field or a loop that any program computed");
+      app.add_subcommand("check", "Judge a traction field, stresses or a loop that any program computed");
   command->add_option("scene", request->scene, "scene file (TOML) that the program solved")->required();
   command
       ->add_option(
           "field", request->field,
           "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: text, .h5 or .vti; or a "
-          "field at any points or on a mesh: text, .vtu, .vtk, .frd, .xdmf, ...; or a "
-          "loop: moment (N m), rotation (rad), or force (N), displacement (m), and perhaps time, "
-          "normal_load: text or .json")
+          "field at any points or on a mesh: text, .vtu, .vtk, .frd, .xdmf, ...; or stresses at x1, x2, x3 "
+          "(depth, m): some of s11, s22, s33, s12, s13, s23 (Pa), text; or a loop: moment (N m), rotation "
+          "(rad), or force (N), displacement (m), and perhaps time, normal_load: text or .json")
       ->required();
   add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
   command
@@ -149,7 +161,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
   command->add_option(
       "--tolerance", request->check.tolerance,
       "error of loads, twist and tractions that is allowed, instead of the one derived from the mesh; of a "
-      "loop's moment, root mean square, instead of 0.01");
+      "loop's moment, root mean square, and of stresses, over the largest von Mises stress, instead of 0.01");
   command->add_flag("--pressure-given", request->check.pressure_given,
                     "take the field's pressure as given: judge only its load, and the tractions under it");
   command->add_flag("--strict", request->check.strict,

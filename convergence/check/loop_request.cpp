@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -61,15 +60,6 @@ std::string present(const std::vector<std::string>& there, const std::vector<std
 bool is_of_force(const std::vector<std::string>& there) {
   return present(there, kMomentNames).empty() && !present(there, kForceNames).empty() &&
          !present(there, kDisplacementNames).empty();
-}
-
-/// The names in the table's header, in small letters.
-std::vector<std::string> table_names(const std::filesystem::path& file) {
-  std::vector<std::string> names = solver::text_table_names(file);
-  for (std::string& name : names) {
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  }
-  return names;
 }
 
 std::vector<double> csv_column(const std::filesystem::path& file, const std::string& name) {
@@ -165,10 +155,10 @@ void require_sound(const LoopRecord& loop) {
 /// Reads a CSV table, or JSON lists of the same names.
 LoopRecord read_loop(const std::filesystem::path& file) {
   solver::require_input_file(file, solver::kLargestTextTable, "a loop (CSV or JSON)");
-  LoopRecord loop =
-      file.extension() == ".json"
-          ? read_json_loop(file)
-          : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
+  LoopRecord loop = file.extension() == ".json"
+                        ? read_json_loop(file)
+                        : collect(file, solver::text_table_names(file),
+                                  [&](const std::string& name) { return csv_column(file, name); });
   require_sound(loop);
   return loop;
 }
@@ -253,7 +243,7 @@ bool is_loop_file(const std::filesystem::path& file) {
   const std::vector<std::string> text{".csv", ".txt", ".dat", ".tsv"};
   if (present({file.extension().string()}, text).empty() || !std::filesystem::is_regular_file(file))
     return false;
-  const std::vector<std::string> names = table_names(file);
+  const std::vector<std::string> names = solver::text_table_names(file);
   const bool is_field = !present(names, {"x1"}).empty();
   const bool of_torsion = !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();
   return !is_field && (of_torsion || is_of_force(names));

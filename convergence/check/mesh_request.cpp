@@ -110,10 +110,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
                            ".msh", ".inp", ".contact"}) {
     if (ending == mesh) return true;
   }
-  std::vector<std::string> names = solver::text_table_names(file);
-  for (std::string& name : names) {
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  }
+  const std::vector<std::string> names = solver::text_table_names(file);
   const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
   if (has("fn") || (has("r") && !has("x1"))) return true;
   if (!has("x1") || !has("x2")) return has("x") && has("y");

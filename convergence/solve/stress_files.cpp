@@ -130,6 +130,8 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
   for (std::size_t d = 0; d < files.depths.size() && !files.is_volume(); ++d) {
     const solver::StressPlane plane = plane_at(files.depths[d]);
     std::vector<solver::Column> columns{{"x1", solver::cell_x1(grid)}, {"x2", solver::cell_x2(grid)}};
+    if (std::filesystem::path(files.name(d, body)).extension() == ".csv")  // as check reads them
+      columns.push_back({"x3", Eigen::ArrayXd::Constant(grid.cells(), files.depths[d])});
     for (std::size_t a = 0; a < plane.stress.size(); ++a)
       columns.push_back({kStressNames[a], plane.stress[a]});
     columns.push_back({kStressNames.back(), solver::von_mises(plane.stress)});

@@ -265,7 +265,10 @@ std::size_t find_column(const path& file, const std::string& name, const std::ve
 std::vector<std::string> text_table_names(const path& file) {
   TextTable table(file);
   std::vector<std::string> names;
-  for (const Heading& heading : table.header({})) names.emplace_back(heading.name);
+  for (const Heading& heading : table.header({})) {
+    std::ranges::transform(heading.name, std::back_inserter(names.emplace_back()),
+                           [](unsigned char c) { return std::tolower(c); });
+  }
   return names;
 }
 

@@ -8,7 +8,7 @@
 
 namespace slipstick::solver {
 
-/// The names in the header of a table that is text, without their units; as the header writes them.
+/// The names in the header of a table that is text, in small letters and without their units.
 std::vector<std::string> text_table_names(const std::filesystem::path& file);
 
 /// Columns of a table that is text, in SI units where its header says units, as read_columns().

@@ -14,14 +14,70 @@ const Grid& whole(const Grid& grid) {
   return grid;
 }
 
+/// The tractions on a body, which point along x3, x1 and x2.
+std::array<Eigen::ArrayXd, kTractions> tractions_on(Body body, const SolutionFields& fields) {
+  const double sign = body == Body::lower ? 1.0 : -1.0;
+  const Index cells = fields.grid.cells();
+  return {fields.pressure, sign * fields.traction.head(cells), sign * fields.traction.tail(cells)};
+}
+
+/// A corner of cells, and the second difference of the tractions about it: a kernel's sum over the cells is
+/// the sum of these times its corner function.
+struct LoadedCorner {
+  double x1;
+  double x2;
+  std::array<double, kTractions> traction{};
+};
+
+std::vector<LoadedCorner> loaded_corners(const SolutionFields& fields, Body body) {
+  const Grid& grid = whole(fields.grid);
+  const auto tractions = tractions_on(body, fields);
+  std::vector<LoadedCorner> corners;
+  for (Index i = 0; i <= grid.n1; ++i) {
+    for (Index j = 0; j <= grid.n2; ++j) {
+      LoadedCorner corner{grid.x1(0) + (static_cast<double>(i) - 0.5) * grid.h1,
+                          grid.x2(0) + (static_cast<double>(j) - 0.5) * grid.h2};
+      bool loaded = false;
+      for (std::size_t b = 0; b < kTractions; ++b) {
+        const auto at = [&](Index k, Index l) {
+          return k < 0 || l < 0 || k >= grid.n1 || l >= grid.n2 ? 0.0 : tractions[b][k * grid.n2 + l];
+        };
+        corner.traction[b] = at(i - 1, j - 1) - at(i, j - 1) - at(i - 1, j) + at(i, j);
+        loaded = loaded || corner.traction[b] != 0.0;
+      }
+      if (loaded) corners.push_back(corner);
+    }
+  }
+  return corners;
+}
+
 }  // namespace
+
+std::vector<PointStresses> stresses_at(const SolutionFields& fields, double poisson, Body body,
+                                       const std::vector<std::array<double, 3>>& points) {
+  const std::vector<LoadedCorner> corners = loaded_corners(fields, body);
+  std::vector<PointStresses> all;
+  all.reserve(points.size());
+  for (const auto& [x1, x2, depth] : points) {
+    if (!(depth > 0.0)) throw std::domain_error("stresses are computed at depths above zero");
+    PointStresses& sum = all.emplace_back();
+    for (const LoadedCorner& corner : corners) {
+      const KernelValues values = corner_function(x1 - corner.x1, x2 - corner.x2, depth, poisson);
+      for (std::size_t k = 0; k < kStressKernels; ++k) {
+        for (std::size_t u = 0; u < stress_kernels[k].count; ++u) {
+          const auto& [traction, stress] = stress_kernels[k].influences[u];
+          (traction == 0 ? sum.by_pressure : sum.by_shear)[stress] += corner.traction[traction] * values[k];
+        }
+      }
+    }
+  }
+  return all;
+}
 
 SubsurfaceStresses::SubsurfaceStresses(const SolutionFields& fields, double poisson, Body body, int threads)
     : grid_(whole(fields.grid)), poisson_(poisson), transform_(grid_, 1, threads) {
-  const double sign = body == Body::lower ? 1.0 : -1.0;
   const Index cells = grid_.cells();
-  const std::array<Eigen::ArrayXd, kTractions> given{fields.pressure, sign * fields.traction.head(cells),
-                                                     sign * fields.traction.tail(cells)};
+  const auto given = tractions_on(body, fields);
   const std::size_t size = count(transform_.columns() * length());
   for (std::size_t b = 0; b < kTractions; ++b) {
     if ((given[b] == 0.0).all()) continue;

@@ -51,6 +51,17 @@ class SubsurfaceStresses {
   std::array<std::vector<Complex>, kStresses> stresses_;
 };
 
+/// The stresses at one point, Pa, by the pressure and by the shear tractions.
+struct PointStresses {
+  std::array<double, kStresses> by_pressure{};
+  std::array<double, kStresses> by_shear{};
+};
+
+/// As SubsurfaceStresses, at any points (x1, x2, depth above zero; m) and on one thread: a sum over the
+/// corners of all cells that carry tractions. Both parts are linear in Poisson's ratio.
+std::vector<PointStresses> stresses_at(const SolutionFields& fields, double poisson, Body body,
+                                       const std::vector<std::array<double, 3>>& points);
+
 /// Von Mises' stress of a tensor, or of a plane's.
 template <typename Number>
 Number von_mises(const std::array<Number, kStresses>& s) {

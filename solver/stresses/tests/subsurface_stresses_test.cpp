@@ -148,8 +148,12 @@ TEST(SubsurfaceStresses, AreTheSumOverAllCells) {
               sum[a] += fields.pressure[from] * cell[0][a] + sign * fields.traction[from] * cell[1][a] +
                         sign * fields.traction[grid.cells() + from] * cell[2][a];
           }
-          for (std::size_t a = 0; a < kStresses; ++a)
+          const auto [pressure, shear] =
+              stresses_at(fields, 0.3, body, {{grid.x1(at / grid.n2), grid.x2(at % grid.n2), depth}})[0];
+          for (std::size_t a = 0; a < kStresses; ++a) {
             EXPECT_NEAR(plane.stress[a][at], sum[a], 1e-12) << a << " at cell " << at;
+            EXPECT_NEAR(pressure[a] + shear[a], sum[a], 1e-12) << a << " at cell " << at;
+          }
         }
       }
     }
@@ -192,8 +196,10 @@ TEST(SubsurfaceStresses, KeepNaNAsTheLargest) {
 TEST(SubsurfaceStresses, RefuseASurfaceAndAQuadrant) {
   SolutionFields fields = random_fields({4, 4, 1.0, 1.0});
   SubsurfaceStresses stresses(fields, 0.3, Body::lower);
-  for (const double depth : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+  for (const double depth : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(stresses.at(depth), std::domain_error);
+    EXPECT_THROW(stresses_at(fields, 0.3, Body::lower, {{0.0, 0.0, depth}}), std::domain_error);
+  }
   fields.grid.quadrant = true;
   EXPECT_THROW(SubsurfaceStresses(fields, 0.3, Body::lower), std::invalid_argument);
 }
