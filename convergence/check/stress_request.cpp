@@ -170,16 +170,15 @@ RightStresses solved_stresses(const solver::Scene& scene, solver::Body body, con
 }
 
 solver::Body read_body(const solver::Scene& scene, const std::vector<std::string>& read_as) {
-  const auto is_rigid = [](const solver::Material& body) { return std::isinf(body.young_modulus); };
-  solver::Body body = is_rigid(scene.lower) ? solver::Body::upper : solver::Body::lower;
+  bool upper = std::isinf(scene.lower.young_modulus);
   for (const std::string& choice : read_as) {
-    if (choice != "body=lower" && choice != "body=upper")
+    upper = choice == "body=upper";
+    if (!upper && choice != "body=lower")
       throw InputError("--read-as " + choice, "allowed of stresses: body=lower, body=upper");
-    body = choice == "body=upper" ? solver::Body::upper : solver::Body::lower;
-    if (is_rigid(body == solver::Body::upper ? scene.upper : scene.lower))
+    if (std::isinf((upper ? scene.upper : scene.lower).young_modulus))
       throw InputError("--read-as " + choice, "this body is rigid; allowed: the elastic one");
   }
-  return body;
+  return upper ? solver::Body::upper : solver::Body::lower;
 }
 
 Json both_parts(const Parts& parts) {

@@ -177,7 +177,7 @@ class Stresses(CheckTest):
                 (STRESS[[0, 1, 2, 4, 3, 5]], "^s12 and s13 are exchanged"), (STRESS[[0, 1, 2, 3, 5, 4]], "^s13 and s23 are exchanged"),
                 (STRESS[[0, 1, 2, 5, 4, 3]], "^s12 and s23 are exchanged"), (STRESS[[0, 1, 2, 4, 5, 3]], "^s12, s13, s23 are s13, s23, s12"),
                 (STRESS[[1, 0, 2, 3, 4, 5]], "^s11 and s22 are exchanged"), (STRESS[[1, 0, 2, 3, 5, 4]], "axes are x2, x1, x3"),
-                (STRESS[[2, 1, 0, 5, 4, 3]], "axes are x3, x2, x1"), (1.3 * STRESS, "^all stresses are 1.3 times"),
+                (2e-6 * STRESS, "^all stresses are 2 times"), (STRESS[[2, 1, 0, 5, 4, 3]], "axes are x3, x2, x1"), (1.3 * STRESS, "^all stresses are 1.3 times"),
                 (changed(1, 1, 1.2, 1, 1, 1), "^s33 is 1.2 times"), (pressure + 0.7 * (STRESS - pressure), "by the torsion is 0.7 times"),
                 (1.1 * pressure + 0.7 * (STRESS - pressure), "1.1 and 0.7 times")):
             self.bad(SPHERE, AT, stress, cause=cause)
@@ -267,7 +267,10 @@ class Stresses(CheckTest):
         self.assertIn("allowed of stresses: body=lower", check(SPHERE, AT, STRESS, "--read-as", "units=mm"))
         self.assertIn("has stresses below the surface", check(SPHERE, AT, STRESS, "--discrete"))
         self.assertIn("rigid", check(also(SPHERE, "lower.rigid=true"), AT, STRESS, "--read-as", "body=lower"))
+        self.assertIn("a stress of 1e+200", check(SPHERE, AT, 1e200 * STRESS / np.abs(STRESS).max()))
         force = also(example("paper", 64), "load.force=[1e-9,0]")
+        self.assertIn("a point has no stresses to compare with", check(SPHERE, 1e200 * AT, STRESS))
+        self.assertIn("points are too far away", check(force, 1e200 * AT, STRESS))
         self.assertIn("above zero", check(force, AT * [1, 1, 0], STRESS))
         many = [np.tile(AT, (500, 1)), np.tile(STRESS[:1], 500)]
         self.assertIn("30000 rows, each a sum over", check(also(force, "grid.cells=[128,128]"), *many, names=["s11"]))

@@ -11,6 +11,8 @@ from .errors import InputError
 
 Columns = dict[str, npt.NDArray[Any]]
 
+#: Columns of stresses below the surface, which need x3 and at least one component.
+STRESSES = ("s11", "s22", "s33", "s12", "s13", "s23")
 #: Columns that a field needs, and others that it may have.
 NEEDED, _FURTHER = ("x1", "x2", "pressure", "q1", "q2"), ("area", "slip1", "slip2", "gap")
 #: Names of the columns of a loop begin like one of these.
@@ -67,6 +69,11 @@ def field_columns(columns: Columns) -> Optional[Columns]:
     if named["q1"] != "q1" and _arrays(columns).on_surface_tangents("q1"):  # as CSHEAR1, which does not lie along x1
         return None
     return {role + name[len(_bare(name)):]: columns[name] for role, name in named.items()}
+
+
+def are_stresses(columns: Columns) -> bool:
+    names = {_bare(name).lower() for name in columns}
+    return "x3" in names and not names.isdisjoint(STRESSES)
 
 
 def is_loop(columns: Columns) -> bool:

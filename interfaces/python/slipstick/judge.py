@@ -13,7 +13,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _hdf5
-from ._columns import Columns, columns_of, explained, field_columns, is_loop, is_readable
+from ._columns import Columns, are_stresses, columns_of, explained, field_columns, is_loop, is_readable
 from ._program import run
 from ._scene import Scene, prepared
 from .errors import InputError
@@ -77,6 +77,8 @@ def _file_of(field: Any, reading: Mapping[str, Any], folder: Path) -> str:
         return os.fspath(field)
     columns = None if is_file or reading or hasattr(field, "points") else columns_of(field)
     if columns is not None:
+        if are_stresses(columns):
+            return _written(columns, folder / "stresses.csv", all_rows=True)
         if (own := field_columns(columns)) is not None:
             return _written(own, folder / "field.csv")
         if is_loop(columns):
@@ -92,14 +94,15 @@ def _file_of(field: Any, reading: Mapping[str, Any], folder: Path) -> str:
     return os.fspath(file)
 
 
-def _written(columns: Columns, file: Path) -> str:
-    """A table of the rows that carry a pressure or a traction."""
+def _written(columns: Columns, file: Path, all_rows: bool = False) -> str:
+    """A table of all rows, or of those that carry a pressure or a traction."""
     sizes = {name: values.size for name, values in columns.items()}
     if len({*sizes.values()}) > 1:
         raise InputError(f"the field's arrays have {', '.join(f'{name} {size}' for name, size in sizes.items())} values; "
                          "allowed: one a cell in each")
     rows = np.column_stack([np.asarray(values, np.float64) for values in columns.values()])
-    rows = rows[(rows[:, 2:5] != 0).any(axis=1)]
+    if not all_rows:
+        rows = rows[(rows[:, 2:5] != 0).any(axis=1)]
     np.savetxt(file, rows, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
     return os.fspath(file)
 
@@ -112,7 +115,8 @@ def check(scene: Scene, field: Any, *, twist: float | None = None, tolerance: fl
     field: a file, or columns by name, in a dict, a DataFrame, an array of records or a Dataset of xarray: x1, x2 (m, cell centres),
     pressure, q1, q2 (Pa), one number a cell, like the fields of a Solution; x, y, p, tau_x, tau_y and other common names are known.
     Or a field at any points or on a mesh: columns, or an object of meshio or pyvista. Or a loop, as a file or as columns: moment
-    (N m), rotation (rad), or force (N), displacement (m), and optionally time, normal_load. twist: the reported twist in rad
+    (N m), rotation (rad), or force (N), displacement (m), and optionally time, normal_load. Or stresses below the surface: x1, x2, x3
+    (m, depth) and some of s11, s22, s33, s12, s13, s23 (Pa). twist: the reported twist in rad
     (`twist_angle` of a result, not its normalised `twist`). tolerance: the allowed error, instead of the tolerance of the mesh.
     pressure_given: the pressure is not judged. discrete: good only if the field solves the discrete problem of its grid. strict: good
     only in the scene's own units and signs. overrides: as in solve(). If the scene is not a file, write paths in it as absolute paths.

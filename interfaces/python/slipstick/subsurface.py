@@ -11,16 +11,17 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
+from ._columns import STRESSES as COMPONENTS
 from .errors import InputError
 
-COMPONENTS = ("s11", "s22", "s33", "s12", "s13", "s23")
 _NORMAL, _SHEAR = (0, 1, 2), (3, 4, 5)
 _PLACE = {(0, 0): 0, (1, 1): 1, (2, 2): 2, (0, 1): 3, (0, 2): 4, (1, 2): 5}  # of the tensor's element
-_UNITS = {"kPa": 1e-3, "MPa": 1e-6, "GPa": 1e-9}  # of one Pa
-_NEAR_UNIT = 1.5  # a factor is a unit's if it is nearer than this factor
+_UNITS = {"Pa": 1.0, "kPa": 1e-3, "MPa": 1e-6, "GPa": 1e-9}  # of one Pa
+_ALIKE = 0.3  # cosine between given and right stresses, from which on their sizes show a unit
 _EXPLAINED = 0.2  # part of an error that may remain where a mistake explains it
 _AS_GOOD = 2.0  # errors of mistakes that explain the stresses equally well
 _ROUNDING = 1e-9  # relative
+_LARGEST = 1e100  # stress in any unit; errors are squared
 
 Array = npt.NDArray[np.float64]
 
@@ -179,10 +180,10 @@ def explain(right: Right, given: Array, rows: list[int], points: Array, request:
 def _find_unit(right: Array, given: Array) -> Optional[str]:
     """The unit in which stresses are given, where that is not Pa."""
     size, own = np.linalg.norm(right), np.linalg.norm(given)
-    for unit, factor in _UNITS.items():
-        if factor * size / _NEAR_UNIT < own < factor * size * _NEAR_UNIT:
-            return unit
-    return None
+    if not abs(np.vdot(right, given)) > _ALIKE * size * own:
+        return None
+    unit = min(_UNITS, key=lambda unit: abs(math.log(own / (_UNITS[unit] * size))))
+    return unit if unit != "Pa" else None
 
 
 def _percent(part: float) -> str:
@@ -213,6 +214,10 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     given = np.array(list(request["given"].values()), float)
     right, conventions = Right(request, "right"), list(request["conventions"])
     scale = float(von_mises(right.all).max())
+    if not scale > 0.0:  # NaN too
+        raise InputError(f"{request['field']}: points are too far away to have stresses; allowed: at most 1e6 contact radii")
+    if not np.abs(given).max() < _LARGEST:
+        raise InputError(f"{request['field']}: a stress of {np.abs(given).max():g}; allowed: sizes below {_LARGEST:g}")
     own_error = _off(Right(request, "coarse").all, right.all, list(range(6)), scale) if "coarse" in request else 0.0
     if (unit := _find_unit(right.all[rows], given)) is not None:
         given = given / _UNITS[unit]

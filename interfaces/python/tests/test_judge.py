@@ -115,6 +115,17 @@ class CheckTest(unittest.TestCase):
             with self.assertRaisesRegex(slipstick.InputError, "no x1, x2, pressure, q1, q2; .* allowed: columns x1, x2"):
                 slipstick.check(SPHERE, field)
 
+    def test_stresses(self):
+        """Under the centre of Hertz's pressure s33 = -p0/(1 + z^2/a^2), with or without torsion."""
+        exact = slipstick.solve(SPHERE, solver__model="exact")
+        a, peak = exact["contact_radius"], exact["peak_pressure"]
+        depth = np.linspace(0.0, 3.0, 7)
+        columns = {"x1": 0 * depth, "x2": 0 * depth, "x3 [mm]": 1e3 * a * depth, "s33": -peak / (1 + depth**2), "s13": 0 * depth}
+        verdict = slipstick.check(SPHERE, columns, strict=True)
+        self.assertEqual((verdict.verdict, verdict["rows"]), ("good", 7), verdict.why)
+        self.assertLess(max(item["value"] for item in verdict["judged"]), 1e-12)
+        self.assertFalse(slipstick.check(SPHERE, columns | {"s33": -columns["s33"]}).good)
+
     def test_loops(self):
         """The exact loop in the scene's units is good; a loop with another stiffness is not."""
         exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
