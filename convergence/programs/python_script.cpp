@@ -40,10 +40,10 @@ void run_report_script(const std::string& script, const std::vector<std::string>
   }
 }
 
-void require_figure_format(const fs::path& figure) {
+void require_figure_format(const fs::path& figure, const std::string& option) {
   constexpr std::array kEndings{".svg", ".pdf", ".png"};
   if (std::ranges::find(kEndings, figure.extension()) == kEndings.end()) {
-    throw solver::InputError("--figure", figure.string() + ": allowed endings: .svg, .pdf, .png");
+    throw solver::InputError(option, figure.string() + ": allowed endings: .svg, .pdf, .png");
   }
   solver::require_place_for(figure);
 }
@@ -53,6 +53,11 @@ void draw_solve(const fs::path& figure, const Json& result, const fs::path& cell
   solver::write_whole_file(json, json_text(result));
   run_report_script("solve_figure.py", {"--output=" + figure.string(), json, cells},
                     "the result is complete");
+}
+
+void draw_stresses(const fs::path& figure, const fs::path& volume) {
+  run_report_script("stress_figure.py", {"--output=" + figure.string(), "--", volume},
+                    "the volume is complete");
 }
 
 void draw_study(const fs::path& figure, const Json& result) {

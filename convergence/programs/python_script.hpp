@@ -17,13 +17,16 @@ std::filesystem::path project_file(const std::filesystem::path& relative);
 void run_report_script(const std::string& script, const std::vector<std::string>& arguments,
                        const std::string& done);
 
-/// Throws InputError unless a figure can have this ending and its folder exists.
-void require_figure_format(const std::filesystem::path& figure);
+/// Throws InputError, which names the option, unless a figure can have this ending and its folder exists.
+void require_figure_format(const std::filesystem::path& figure, const std::string& option = "--figure");
 
 /// Draws slip and stick, tractions and pressure of a result; of a history its loop too. cells: the file of
 /// its fields, in a temporary folder, into which the result is written too; with "{step}" in its name, as in
 /// the figure's, a file of each step. Throws as run_report_script().
 void draw_solve(const std::filesystem::path& figure, const Json& result, const std::filesystem::path& cells);
+
+/// Draws the stresses of a volume, as `solve --stresses` writes it. Throws as run_report_script().
+void draw_stresses(const std::filesystem::path& figure, const std::filesystem::path& volume);
 
 /// Draws errors, orders and budget of a study's result. Throws as run_report_script().
 void draw_study(const std::filesystem::path& figure, const Json& result);

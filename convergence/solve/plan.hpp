@@ -6,7 +6,7 @@
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/solve/accuracy.hpp"
-#include "convergence/solve/stress_files.hpp"
+#include "convergence/stresses/stress_files.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {

@@ -117,6 +117,12 @@ void add_stress_options(CLI::App& command, StressFiles& stresses) {
       "{depth}; of both bodies where it holds {body}");
   file->needs(depths);
   depths->needs(file);
+  command
+      .add_option(
+          "--stress-figure", stresses.figure,
+          "draw von Mises' and the largest shear stress of the volume in the planes through the largest one: "
+          ".svg, .pdf or .png; of both bodies where it holds {body}")
+      ->needs(file);
   const auto add_coefficient = [&](const char* name, std::optional<double>& coefficient, const char* help) {
     command.add_option(name, coefficient, help)
         ->check(CLI::NonNegativeNumber)

@@ -9,7 +9,7 @@
 
 #include "convergence/solve/accuracy.hpp"
 #include "convergence/solve/scene_file.hpp"
-#include "convergence/solve/stress_files.hpp"
+#include "convergence/stresses/stress_files.hpp"
 #include "solver/grid/ranks.hpp"
 #include "solver/scene/scene.hpp"
 

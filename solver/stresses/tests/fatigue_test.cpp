@@ -10,7 +10,7 @@
 namespace slipstick::solver {
 namespace {
 
-// Against an independent evaluation in all cells: convergence/solve/tests/stress_cycle_test.py.
+// Against an independent evaluation in all cells: convergence/stresses/tests/stress_cycle_test.py.
 
 Findley findley(const std::vector<Tensor>& states, double k) {
   Findley found;

@@ -11,7 +11,7 @@
 namespace slipstick::solver {
 namespace {
 
-// The order of convergence, and the largest stresses: convergence/solve/tests/stress_files_test.py.
+// The order of convergence, and the largest stresses: convergence/stresses/tests/stress_files_test.py.
 
 using Tensor = std::array<double, kStresses>;
 

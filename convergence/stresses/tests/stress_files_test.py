@@ -141,6 +141,13 @@ class StressFiles(ProgramTest):
                 np.testing.assert_allclose(fields[name][at][0].T.ravel(), cells[name], rtol=1e-6, atol=1e-7 * PEAK, err_msg=name)
             self.assertEqual(list(cells["x2"][:len(x2)]), list(x2))
 
+    def test_the_figure_names_the_largest_stress(self):
+        result = self.solved(SPHERE, "0.1a..1a:8", "--stress-figure", "s.svg", file="s.vtr")
+        text = Path("s.svg").read_text()
+        self.assertIn(f"{result['von_mises']['value'] / 1e6:.4g} MPa", text)
+        self.assertIn(f"{result['von_mises']['at'][2] * 1e6:.3g} µm", text)
+        self.assertIn("with a volume", self.solved(SPHERE, "1e-4", "--stress-figure", "s.svg", file="s.csv", code=2))
+
     def test_bad_input_is_refused(self):
         for depths in ("0", "-1e-4", "nan", "inf", "1e-4 Pa", "deep", "a", "0a", "1um..-1um:3"):
             self.assertIn("allowed: depths above zero", self.solved(SHORT_SCENE, depths, code=2))

@@ -1,4 +1,4 @@
-#include "convergence/solve/stress_files.hpp"
+#include "convergence/stresses/stress_files.hpp"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "convergence/programs/python_script.hpp"
 #include "convergence/results/make_record.hpp"
-#include "convergence/solve/stress_volume.hpp"
+#include "convergence/stresses/stress_volume.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/units.hpp"
@@ -83,6 +84,11 @@ std::vector<solver::Body> StressFiles::bodies(const solver::Scene& scene) const 
 
 void StressFiles::read_depths(const solver::Scene& scene) {
   if (!is_volume()) solver::require_field_format(file, "--stresses");
+  if (!figure.empty()) {
+    require_figure_format(figure, "--stress-figure");
+    if (!is_volume())
+      throw InputError("--stress-figure " + figure, "allowed: with a volume, --stresses FILE.vtr");
+  }
   for (const std::string& word : depth_words) read(word, scene, depths);
   if (is_volume()) {
     std::vector<double> ascending = depths;
@@ -126,6 +132,7 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
     const std::string file = files.name(0, body);
     solver::write_whole_file(
         file, [&](std::FILE* stream) { write_stress_volume(stream, file, grid, files.depths, plane_at); });
+    if (!files.figure.empty()) draw_stresses(with(files.figure, kBody, word(body)), file);
   }
   for (std::size_t d = 0; d < files.depths.size() && !files.is_volume(); ++d) {
     const solver::StressPlane plane = plane_at(files.depths[d]);

@@ -1,4 +1,4 @@
-#include "convergence/solve/stress_volume.hpp"
+#include "convergence/stresses/stress_volume.hpp"
 
 #include <fmt/ranges.h>
 #include <sys/types.h>

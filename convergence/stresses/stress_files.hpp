@@ -17,6 +17,7 @@ struct StressFiles {
   std::vector<std::string> depth_words;  ///< as --depths takes them: depth_of() in the source
   std::vector<double> depths = {};       ///< m, by read_depths()
   solver::FatigueCoefficients fatigue = {};
+  std::string figure = {};  ///< of a volume, "{body}" as in file; empty: none
 
   bool is_volume() const;                                        ///< by the ending .vtr
   std::string name(std::size_t depth, solver::Body body) const;  ///< of the file of depths[depth]
