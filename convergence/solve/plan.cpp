@@ -137,7 +137,8 @@ SolvePlan plan_solve(const Scene& scene, int ranks) {
 StressPlan plan_stresses(const StressFiles& files, const Scene& scene) {
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const auto depths = static_cast<double>(files.depths.size());
-  const auto growth = static_cast<double>(grid.cells()) / (kTimedCells * kTimedCells);
+  const auto work = [](double cells) { return cells * std::log(cells + 1.0); };
+  const double growth = work(static_cast<double>(grid.cells())) / work(kTimedCells * kTimedCells);
   return {.planes = depths * static_cast<double>(files.bodies(scene).size() * (1 + states_of(files, scene))),
           .bytes = solver::memory_of_stresses(grid, states_of(files, scene)),
           .seconds = timed_seconds(files, scene, grid) * depths * growth};

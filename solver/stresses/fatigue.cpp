@@ -63,21 +63,13 @@ Eigen::Vector3d principal(const Tensor& stress) {
   return stress.selfadjointView<Eigen::Lower>().eigenvalues();
 }
 
-/// Upper bounds of a cycle: the shear stress of a deviator is at most its norm over sqrt(2).
-struct Bounds {
-  double amplitude = 0.0;  ///< of the shear stress on any plane; NaN where a stress is
-  double hydrostatic = -std::numeric_limits<double>::infinity();
-};
-
-Bounds bounds(std::span<const Tensor> states) {
+/// An upper bound of the shear stress's amplitude on any plane: a deviator has at most its norm over sqrt(2).
+/// NaN where a stress is.
+double amplitude_bound(std::span<const Tensor> states) {
   Tensor mean = Tensor::Zero();
   for (const Tensor& stress : states) mean += deviator(stress) / static_cast<double>(states.size());
-  Bounds most;
-  for (const Tensor& stress : states) {
-    const Tensor part = deviator(stress);
-    most.amplitude = std::max((part - mean).norm() * M_SQRT1_2, most.amplitude);
-    most.hydrostatic = std::max(stress.trace() / 3.0, most.hydrostatic);
-  }
+  double most = 0.0;
+  for (const Tensor& stress : states) most = std::max((deviator(stress) - mean).norm() * M_SQRT1_2, most);
   return most;
 }
 
@@ -140,7 +132,7 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
 /// vector whose second derivative is at most 4 T, and the normal stress's is at most 4 S; the first
 /// derivative of the sum vanishes at the best plane.
 void find_plane(std::span<const Tensor> states, double k, Findley& best) {
-  const double amplitude = bounds(states).amplitude;
+  const double amplitude = amplitude_bound(states);
   double shear = 0.0, normal = -std::numeric_limits<double>::infinity();
   for (const Tensor& stress : states) {
     const Eigen::Vector3d values = principal(stress);
@@ -181,15 +173,16 @@ void LargestFatigue::include(std::span<const StressPlane> states, const FatigueC
   std::vector<Tensor> cycle(states.size());
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const std::array<double, 3> at{grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), states[0].depth};
+    double hydrostatic = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < states.size(); ++i) {
       const auto s = [&](Stress a) { return states[i].stress[a][cell]; };
       cycle[i] << s(k11), s(k12), s(k13), s(k12), s(k22), s(k23), s(k13), s(k23), s(k33);
+      hydrostatic = std::max(cycle[i].trace() / 3.0, hydrostatic);
     }
-    const Bounds most = bounds(cycle);
-    if (std::isnan(most.amplitude)) dang_van.value = findley.value = most.amplitude;  // and stay so
-    if (const auto alpha = asked.dang_van;
-        alpha && most.amplitude + *alpha * most.hydrostatic > dang_van.value) {
-      const DangVan found = solver::dang_van(cycle, *alpha);
+    const double amplitude = amplitude_bound(cycle);
+    if (std::isnan(amplitude)) dang_van.value = findley.value = amplitude;  // and stay so
+    if (asked.dang_van && amplitude + *asked.dang_van * hydrostatic > dang_van.value) {
+      const DangVan found = solver::dang_van(cycle, *asked.dang_van);
       if (found.value > dang_van.value) std::tie(dang_van, dang_van_at) = std::tie(found, at);
     }
     const double before = findley.value;
