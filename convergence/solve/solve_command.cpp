@@ -227,6 +227,7 @@ void set_target(const SolveWords& words, SolveRequest& request) {
 SolveRequest request_of(const CLI::App& command, SolveWords words) {
   SolveRequest& request = words.request;
   require_file_formats(request.files);
+  if (!request.stresses.figure.empty()) require_figure_format(request.stresses.figure, "--stress-figure");
   if (!words.model.empty()) {
     request.source.overrides.push_back(fmt::format("solver.model=\"{}\"", words.model));
   }

@@ -170,7 +170,11 @@ void write_solved(const SolveRequest& request, const SolvedScene& solved,
   if (!request.stresses.file.empty())
     result["stresses"] = write_stresses(request.stresses, request.scene, solved.solution, cycle);
   write_answer(request, solved, text, result);
-  if (result.contains("stresses")) text << stresses_text(result["stresses"]);
+  if (!result.contains("stresses")) return;
+  text << stresses_text(result["stresses"]);
+  if (request.stresses.figure.empty()) return;
+  for (const solver::Body body : request.stresses.bodies(request.scene))
+    draw_stresses(request.stresses.figure_name(body), request.stresses.name(0, body));
 }
 
 /// Adds pressure and tractions at the end of each step of the last cycle to `states`.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "convergence/programs/python_script.hpp"
 #include "convergence/results/make_record.hpp"
 #include "convergence/stresses/stress_volume.hpp"
 #include "solver/input/field_file.hpp"
@@ -74,6 +73,8 @@ std::string StressFiles::name(std::size_t depth, solver::Body body) const {
   return with(with(file, kDepthNumber, std::to_string(depth + 1)), kBody, word(body));
 }
 
+std::string StressFiles::figure_name(solver::Body body) const { return with(figure, kBody, word(body)); }
+
 std::vector<solver::Body> StressFiles::bodies(const solver::Scene& scene) const {
   std::vector<solver::Body> elastic;
   if (!std::isinf(scene.lower.young_modulus)) elastic.push_back(solver::Body::lower);
@@ -84,11 +85,8 @@ std::vector<solver::Body> StressFiles::bodies(const solver::Scene& scene) const 
 
 void StressFiles::read_depths(const solver::Scene& scene) {
   if (!is_volume()) solver::require_field_format(file, "--stresses");
-  if (!figure.empty()) {
-    require_figure_format(figure, "--stress-figure");
-    if (!is_volume())
-      throw InputError("--stress-figure " + figure, "allowed: with a volume, --stresses FILE.vtr");
-  }
+  if (!figure.empty() && !is_volume())
+    throw InputError("--stress-figure " + figure, "allowed: with a volume, --stresses FILE.vtr");
   for (const std::string& word : depth_words) read(word, scene, depths);
   if (is_volume()) {
     std::vector<double> ascending = depths;
@@ -132,7 +130,6 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
     const std::string file = files.name(0, body);
     solver::write_whole_file(
         file, [&](std::FILE* stream) { write_stress_volume(stream, file, grid, files.depths, plane_at); });
-    if (!files.figure.empty()) draw_stresses(with(files.figure, kBody, word(body)), file);
   }
   for (std::size_t d = 0; d < files.depths.size() && !files.is_volume(); ++d) {
     const solver::StressPlane plane = plane_at(files.depths[d]);

@@ -19,6 +19,7 @@ struct StressFiles {
   solver::FatigueCoefficients fatigue = {};
   std::string figure = {};  ///< of a volume, "{body}" as in file; empty: none
 
+  std::string figure_name(solver::Body body) const;
   bool is_volume() const;                                        ///< by the ending .vtr
   std::string name(std::size_t depth, solver::Body body) const;  ///< of the file of depths[depth]
   /// The lower one, the upper one if the lower is rigid, or both where the name holds "{body}".
