@@ -52,12 +52,15 @@ std::string outcome_text(const Judgement& judgement) {
   return comparison ? to_string(*comparison) : to_string(judgement.outcome);
 }
 
+/// "40 gates: 38 passed, 2 failed"; zeros are not shown.
 std::string counts_of(const std::vector<Judgement>& judgements) {
-  std::vector<std::pair<std::string, long>> counts;
+  std::vector<std::string> parts;
   for (auto outcome = kSeverity.rbegin(); outcome != kSeverity.rend(); ++outcome) {
-    counts.emplace_back(to_string(*outcome), count(judgements, *outcome));
+    const long number = count(judgements, *outcome);
+    if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*outcome)));
   }
-  return counts_text("gate", counts);
+  return fmt::format("{} gate{}: {}", judgements.size(), judgements.size() == 1 ? "" : "s",
+                     fmt::join(parts, ", "));
 }
 
 /// One line on the published numbers; empty where there are none.

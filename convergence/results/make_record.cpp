@@ -210,16 +210,12 @@ ErrorsRecord errors_of(const Solution& solution, const OracleAnswer& exact) {
 // ---------------------------------------------------------------- a step, a solve
 
 WorkRecord work_of(const solver::Scene& scene, const Solution& solution) {
-  const solver::Seconds& seconds = solution.seconds;
   return {.iterations = solution.iterations,
           .operator_applications = solution.operator_applications,
           .pressure_applications = solution.pressure_applications,
           .turns =
               scene.contact.coupling == solver::Coupling::full ? std::optional(solution.turns) : std::nullopt,
-          .seconds = {.setup = seconds.setup,
-                      .pressure = seconds.pressure,
-                      .traction = seconds.traction,
-                      .total = seconds.total}};
+          .seconds = solution.seconds};
 }
 
 EndRecord end_of(const solver::Scene& scene, const Solution& solution, const OracleAnswer& exact) {

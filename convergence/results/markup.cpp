@@ -1,6 +1,6 @@
 #include "convergence/results/markup.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
@@ -116,16 +116,6 @@ std::string markdown_with_table(std::string text, std::string_view header,
     text += rows[i] + "\n";
   }
   return text;
-}
-
-std::string counts_text(std::string_view noun, const std::vector<std::pair<std::string, long>>& counts) {
-  std::vector<std::string> parts;
-  long all = 0;
-  for (const auto& [word, number] : counts) {
-    all += number;
-    if (number > 0) parts.push_back(fmt::format("{} {}", number, word));
-  }
-  return fmt::format("{} {}{}: {}", all, noun, all == 1 ? "" : "s", fmt::join(parts, ", "));
 }
 
 }  // namespace slipstick::convergence

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 /// Text in files that others read.
@@ -49,8 +48,5 @@ std::string junit_text(const std::string& title, const std::vector<JunitCase>& c
 /// rows: each begins and ends with a bar; the worst come first. noun: "gates", in "7 more gates".
 std::string markdown_with_table(std::string text, std::string_view header,
                                 const std::vector<std::string>& rows, std::string_view noun);
-
-/// "40 gates: 38 passed, 2 failed". counts: the number of each; zeros are not shown.
-std::string counts_text(std::string_view noun, const std::vector<std::pair<std::string, long>>& counts);
 
 }  // namespace slipstick::convergence

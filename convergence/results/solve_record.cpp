@@ -132,7 +132,7 @@ void list_fields(auto& fields, Is<ExactRecord> auto& exact) {
   fields("relative_uncertainty", exact.relative_uncertainty);
 }
 
-void list_fields(auto& fields, Is<SecondsRecord> auto& seconds) {
+void list_fields(auto& fields, Is<solver::Seconds> auto& seconds) {
   fields("setup", seconds.setup);
   fields("pressure", seconds.pressure);
   fields("traction", seconds.traction);
@@ -425,7 +425,6 @@ SolveRecord from_json(const Json& json) { return record_of<SolveRecord>(json); }
 Json to_json(const StepRecord& step) { return json_of(step); }
 StepRecord step_from_json(const Json& json) { return record_of<StepRecord>(json); }
 Json to_json(const CertificateRecord& certificate) { return json_of(certificate); }
-Json to_json(const ResolutionRecord& resolution) { return json_of(resolution); }
 Json to_json(const solver::Safeguards& safeguards) { return json_of(safeguards); }
 Json to_json(const FieldErrorRecord& error) { return json_of(error); }
 Json to_json(const TractionErrorRecord& error) { return json_of(error); }

@@ -13,6 +13,7 @@
 #include "solver/newton/safeguards.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/solution.hpp"
 
 /// The result of one solve as a value, in SI units and radians: docs/schema/solve.schema.json has the same
 /// names. to_json() and from_json() are the only two places where it becomes JSON and comes back.
@@ -208,20 +209,12 @@ struct ErrorsRecord {
   std::optional<ExactRecord> exact = {};
 };
 
-/// s, wall time.
-struct SecondsRecord {
-  double setup = 0.0;
-  double pressure = 0.0;
-  double traction = 0.0;
-  double total = 0.0;
-};
-
 struct WorkRecord {
   int iterations = 0;
   double operator_applications = 0.0;  ///< tangential, of all grids, in applications on the finest one
   double pressure_applications = 0.0;  ///< of the normal operator, counted the same way
   std::optional<int> turns = {};       ///< of pressure and shear, under full coupling
-  SecondsRecord seconds = {};
+  solver::Seconds seconds = {};
 };
 
 /// The end of a step.
@@ -383,7 +376,6 @@ std::vector<Json> to_json(const std::vector<SolveRecord>& records);
 Json to_json(const StepRecord& step);
 StepRecord step_from_json(const Json& json);
 Json to_json(const CertificateRecord& certificate);
-Json to_json(const ResolutionRecord& resolution);
 Json to_json(const FieldErrorRecord& error);
 Json to_json(const solver::Safeguards& safeguards);
 Json to_json(const TractionErrorRecord& error);

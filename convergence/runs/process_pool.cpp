@@ -302,8 +302,6 @@ std::vector<SolveRecord> ProcessPool::run(const std::vector<RunSpec>& specs) con
   return run_prepared(runs);
 }
 
-SolveRecord ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
-
 std::vector<SolveRecord> ProcessPool::run_or_refuse(const std::vector<RunSpec>& specs) const {
   std::vector<PreparedRun> readable;
   std::vector<std::string> complaints;  // empty: the scene can be read

@@ -45,7 +45,6 @@ class ProcessPool {
   /// and where a result or its fields cannot be written, since all later ones would be lost too.
   std::vector<SolveRecord> run(const std::vector<RunSpec>& specs) const;
   std::vector<SolveRecord> run_prepared(const std::vector<PreparedRun>& runs) const;
-  SolveRecord run(const RunSpec& spec) const;
 
   /// The same; a scene that cannot be read gives a record with the status refused.
   std::vector<SolveRecord> run_or_refuse(const std::vector<RunSpec>& specs) const;

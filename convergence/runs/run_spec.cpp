@@ -300,19 +300,11 @@ std::string why_missing(const Json& result, const std::string& path) {
   return result.value("message", "the result does not have it");
 }
 
-void FailedRuns::add(const std::string& name, const SolveRecord& record) {
-  runs_[name] |= record.is_failed();
-  if (!record.is_failed() || first_) return;
-  first_ = {record.run.empty() ? name : record.run,
-            record.message.empty() ? "no reason is known" : record.message};
-}
-
 void FailedRuns::add(const std::string& name, const Json& result) {
-  SolveRecord record;
-  record.status = convergence::is_failed(result) ? RunStatus::failed : RunStatus::converged;
-  record.message = result.value("message", "");
-  record.run = result.value("run", "");
-  add(name, record);
+  runs_[name] |= is_failed(result);
+  if (!is_failed(result) || first_) return;
+  const std::string message = result.value("message", "");
+  first_ = {result.value("run", name), message.empty() ? "no reason is known" : message};
 }
 
 Json FailedRuns::json() const {

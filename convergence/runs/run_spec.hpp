@@ -106,7 +106,6 @@ SolveRecord not_computed(RunStatus status, const std::string& message, const Run
 class FailedRuns {
  public:
   /// name: of the run; equal names count once.
-  void add(const std::string& name, const SolveRecord& record);
   void add(const std::string& name, const Json& result);
 
   /// {count, of, first: {run, message}}; first is missing where none failed.

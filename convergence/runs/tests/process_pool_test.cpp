@@ -29,7 +29,7 @@ class ProcessPoolTest : public ScratchFolder {
 TEST_F(ProcessPoolTest, LeavesOtherChildrenOfThisProcessAlone) {
   const pid_t other = fork();
   if (other == 0) _exit(3);
-  EXPECT_TRUE(ProcessPool(options()).run(RunSpec{kPaper, {kCells}}).is_converged());
+  EXPECT_TRUE(ProcessPool(options()).run({{kPaper, {kCells}}}).front().is_converged());
   int status = 0;
   EXPECT_EQ(waitpid(other, &status, 0), other);
   EXPECT_EQ(WEXITSTATUS(status), 3);
@@ -48,7 +48,7 @@ TEST_F(ProcessPoolTest, StopsWhereItsHostSaysSo) {
     untouched = now.sa_handler == handle;
     return true;
   };
-  EXPECT_THROW(ProcessPool(stopping).run(RunSpec{kPaper, {"grid.cells=[256,256]", "solver.operator=direct"}}),
+  EXPECT_THROW(ProcessPool(stopping).run({{kPaper, {"grid.cells=[256,256]", "solver.operator=direct"}}}),
                std::runtime_error);
   EXPECT_TRUE(untouched);
   std::signal(SIGINT, before);
