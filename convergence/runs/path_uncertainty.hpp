@@ -42,10 +42,11 @@ struct PathCorrection {
   double uncertainty;
 };
 
-/// By Richardson's extrapolation in 1/n from n and 4 n parts on few cells: an error that falls like 1/n is
-/// 4/3 of their difference. None where the parts cannot matter, are fewer than kFewestCorrected, a coarse
-/// history broke off, an earlier step has a larger error than the last one (a reversal), or a step changes
-/// the normal load and another load. solution: of the scene's last step.
+/// Each finer path on a coarser mesh (a combination technique): from n to 4 n parts on a coarse mesh, from
+/// there to 16 n on one with half as many cells, and to the limit of an error c/n + d/n^2. None where the
+/// parts cannot matter, are fewer than kFewestCorrected, a coarse history broke off, an earlier step has a
+/// larger error than the last one (a reversal), or a step changes the normal load and another load. solution:
+/// of the scene's last step.
 std::optional<PathCorrection> path_correction(const solver::Scene& scene, const solver::Solution& solution);
 
 /// solver::solve() with the path's uncertainty in the resolution of each step, where all details are wanted.

@@ -56,6 +56,13 @@ constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
 constexpr std::size_t kPathTrialParts = 300;
+/// The number of parts, and the mesh, are chosen with this margin.
+constexpr double kPathMargin = 0.8;
+/// The error of n parts falls like 1/(n + kBeforeLinear) from kFewestCorrected parts on.
+constexpr double kBeforeLinear = 1.6;
+/// Uncertainty of a correction on a fine mesh: this part of it, and more that parts do not lower.
+constexpr double kLeftOfChange = 0.042;
+constexpr double kLeftOnMesh = 1e-6;
 
 /// Relative uncertainty of the twist, or moment, by the length of the steps.
 double path_of(const solver::Solution& solution) {
@@ -68,18 +75,23 @@ double path_of(const solver::Solution& solution) {
 /// Sets the number of parts of each step so that their error is within its part of the target, at most
 /// kMaxSubsteps, and the error expected of them, which falls as 1/parts.
 void make_more_parts(Scene& scene, AccuracyTarget& target) {
-  const double left = scene.solver.substeps * target.path;
-  const double needed = std::ceil(left / (0.8 * kPathPart * target.error));
+  const double before = scene.solver.substeps < kFewestCorrected ? 0.0 : kBeforeLinear;
+  const double left = (scene.solver.substeps + before) * target.path / kPathMargin;
+  const double needed = std::ceil(left / (kPathPart * target.error) - before);
   scene.solver.substeps = needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
-  target.path = std::min(left / scene.solver.substeps, kMaxPathPart * target.error);
+  target.path = std::min(left / (scene.solver.substeps + before), kMaxPathPart * target.error);
 }
 
-/// The same of a coarse answer, with what the correction of a mean over shifted grids leaves.
-double path_left(const Scene& scene) {
+/// The same of a coarse answer, with what the correction of a mean over shifted grids leaves: there, if that
+/// is enough, or else on a fine mesh.
+double path_left(const Scene& scene, double enough) {
   const solver::Solution solution = solve_with_path(scene);
   if (!takes_shifted_grids(scene, AccuracyOf::twist)) return path_of(solution);
   const std::optional<PathCorrection> correction = path_correction(scene, solution);
-  return correction ? correction->uncertainty : path_of(solution);
+  if (!correction) return path_of(solution);
+  const double fine = kLeftOfChange * std::abs(correction->change) + kLeftOnMesh;
+  return correction->uncertainty <= enough ? correction->uncertainty
+                                           : std::min(correction->uncertainty, fine);
 }
 
 /// The scene with the number of parts of its steps that the target needs, found on few cells; target.path
@@ -93,17 +105,21 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
     if (trial > 0 && steps * static_cast<std::size_t>(scene.solver.substeps) > kPathTrialParts) return scene;
     double path = 0.0;
     try {
-      path = path_left(coarse);
+      path = path_left(coarse, kPathPart * target.error);
     } catch (const InputError&) {
       return scene;  // the chosen mesh may carry the loads; if not, its solve throws the error
     }
     target.path = path;
-    if (!(path > kPathPart * target.error)) return scene;
+    if (!(path > kPathPart * target.error)) {
+      target.path /= kPathMargin;
+      return scene;
+    }
     if (takes_shifted_grids(scene, target.of) && scene.solver.substeps < kFewestCorrected) {
       scene.solver.substeps = kFewestCorrected;
       target.path = std::min(path, kMaxPathPart * target.error);
     } else {
       make_more_parts(scene, target);
+      if (takes_shifted_grids(scene, target.of)) return scene;
     }
   }
   return scene;
