@@ -48,8 +48,16 @@ class TangentialOnGrid {
   static std::span<const Parity> parities() { return kTorsionParities; }
   FrictionDiscs admissible() const { return {packing_.cells(), problem_.friction_bound}; }
   Packing& packing() { return packing_; }
-  // The contact cells are known.
-  static void predict_candidates(const TangentialOnGrid&, const NewtonSummary&, const ArrayXd&) {}
+  /// In many spots each cell takes the part of its friction bound that the coarse tractions have there:
+  /// bounds vary from cell to cell at the edges of spots. The contact cells are known.
+  void predict(const TangentialOnGrid& coarse, const NewtonSummary&, ArrayXd& traction) const {
+    if (problem_.start.size() > 0 || !Sweep(grid_, problem_.friction_bound).is_ragged()) return;
+    constexpr double kLeastPart = 1e-30;  // a coarse bound may be too small to divide by
+    constexpr std::array<Parity, 1> kEven{{{1, 1}}};
+    const ArrayXd& bound = problem_.friction_bound;
+    const ArrayXd prolonged = prolong_to(grid_, coarse.grid_, restrict_to(coarse.grid_, grid_, bound), kEven);
+    traction *= (prolonged > kLeastPart * bound).select(bound / prolonged, 0.0).replicate(2, 1);
+  }
   static bool missed_contact_cells(LinearOperator&, const NestedSummary&, double) { return false; }
   ArrayXd start() const {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());

@@ -58,7 +58,7 @@ class PressureOnGrid {
   }
 
   /// From the opening under the coarse grid's displacement. pressure: the coarse grid's.
-  void predict_candidates(PressureOnGrid& coarse, const NewtonSummary& found, const ArrayXd& pressure) {
+  void predict(PressureOnGrid& coarse, const NewtonSummary& found, const ArrayXd& pressure) {
     if (!found.converged) return;
     share_rows(coarse.grid_, coarse.displacement_);
     ArrayXd opening = prolong_to(grid_, coarse.grid_, coarse.displacement_, kPressureParities);

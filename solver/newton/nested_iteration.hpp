@@ -47,8 +47,9 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.guess() } -> std::same_as<Eigen::ArrayXd>;     // near the answer; empty: by coarser grids
   {problem.keep_own_rows()};                               // which are enough once it has been coarsened
   { problem.coarsened(grid) } -> std::same_as<Problem>;    // on the coarse grid
-  // Candidates for contact cells, predicted from the coarse grid's answer:
-  {problem.predict_candidates(problem, summary.newton, summary.field)};
+  // From the coarse grid's answer, whose field has been prolonged: candidates for contact cells, or a field
+  // nearer to the fine grid's answer:
+  {problem.predict(problem, summary.newton, summary.field)};
   // True if other cells are in contact; then these have become candidates:
   { problem.missed_contact_cells(op, summary, 0.0) } -> std::same_as<bool>;
 };
@@ -81,8 +82,8 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
 
 /// 1. The first field is the guess, or start() on the coarsest grid that can_coarsen() allows.
 /// 2. Solve there, to a tolerance of the order of the mesh's error.
-/// 3. Prolong the change from start(), which is exact on every grid, to the next finer grid, and the contact
-///    cells with it; again from 2, on the finest grid to the given tolerance.
+/// 3. Prolong the change from start(), which is exact on every grid, to the next finer grid, and what
+///    predict() takes from it; again from 2, on the finest grid to the given tolerance.
 /// 4. If cells that are no candidates turn out to be in contact, add them and solve again on that grid.
 ///
 /// The result's field is known in this rank's rows; slip and displacement are packed.
@@ -113,7 +114,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
       in_own_rows(grid, change.size(), [&](Index first, Index count) {
         result.field.segment(first, count) += change.segment(first, count);
       });
-      problem.predict_candidates(on_coarse, below.newton, result.field);
+      problem.predict(on_coarse, below.newton, result.field);
     }
     multipliers = below.newton.multipliers;
   }

@@ -28,10 +28,11 @@ inline constexpr double kLooseReduction = 0.1;
 inline constexpr double kTightReduction = 1e-4;
 inline constexpr double kPartOfNeeded = 0.3;
 /// On rough surfaces, and for pressures, states change everywhere: while the active set changes, tight linear
-/// solves are wasted. Forcing term of the inexact Newton method: eta = kDistrust sqrt(changed / free cells),
-/// at most kLooseReductionOfRagged.
+/// solves are wasted. Forcing term of the inexact Newton method: eta = kDistrust sqrt(changed / free cells)
+/// for pressures, for tractions with kDistrustOfTractions, at most kLooseReductionOfRagged.
 inline constexpr double kLooseReductionOfRagged = 0.2;
 inline constexpr double kDistrust = 3.0;
+inline constexpr double kDistrustOfTractions = 1.5;
 /// Most iterations of one linear problem.
 inline constexpr int kInnerIterations = 40;
 
@@ -92,7 +93,8 @@ class TangentProblem {
     }
     const double changed =
         static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
-    const double reduction = std::max(kPartOfNeeded * needed, kDistrust * std::sqrt(changed));
+    const double reduction =
+        std::max(kPartOfNeeded * needed, (kIsScalar ? kDistrust : kDistrustOfTractions) * std::sqrt(changed));
     return {std::clamp(reduction, kTightReduction, kLooseReductionOfRagged), iterations};
   }
 
