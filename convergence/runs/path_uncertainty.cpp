@@ -24,13 +24,14 @@ using Eigen::ArrayXXd;
 constexpr double kPathCells = 16.0;
 /// Those of a correction, at most; its second mesh has half as many.
 constexpr double kCorrectionCells = 96.0;
-/// The uncertainty of a correction c by meshes of n and n/2 cells, whose differences are d apart:
-/// kOfChange c/n + kOfMeshes d + kOfCells/n^2, and the second-order term. The constants are chosen so that on
-/// 96 cells it holds, 1.2 times or more, in all of 38 random histories: 24 twists of ellipsoids, 14 pushes
-/// before twists, Coulomb's and a capped law, 4, 8 and 16 parts.
-constexpr double kOfChange = 3.0;
+/// The uncertainty of a correction c by meshes of n and n/2 cells, whose differences are d apart, where the
+/// slip ring is a part s of the contact's radius: kOfChange c/(n s) + kOfMeshes d + kOfCells/n^2, and the
+/// second-order term. The constants are chosen so that on 96 cells it holds in all of 38 random histories: 24
+/// twists of ellipsoids, 14 pushes before twists, Coulomb's and a capped law, 4, 8 and 16 parts.
+constexpr double kOfChange = 1.5;
 constexpr double kOfMeshes = 0.5;
 constexpr double kOfCells = 8e-3;
+constexpr double kNarrowestRing = 0.02;
 /// Part of these cells that the contact must fill, at least, along its diameter.
 constexpr double kPathAcross = 0.5;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
@@ -247,7 +248,8 @@ std::optional<PathCorrection> path_correction(const Scene& scene, const Solution
   const double change = fine[0] + few[1] + few[1] / 3.0;
   const double second = (4.0 * few[1] - few[0]) / 45.0;  // of an error c/n + d/n^2
   const double apart = std::abs(fine[0] - few[0]);
-  return PathCorrection{change + second, kOfChange * std::abs(change) / cells + kOfMeshes * apart +
+  const double ring = std::fmax(1.0 - solution.stick_radius / solution.contact_radius, kNarrowestRing);
+  return PathCorrection{change + second, kOfChange * std::abs(change) / (cells * ring) + kOfMeshes * apart +
                                              kOfCells / (cells * cells) + std::abs(second)};
 }
 
