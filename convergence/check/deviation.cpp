@@ -200,8 +200,9 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid
       mirrored ? solver::Reduction(grid, bound, bound) : solver::Reduction(grid, bound);
   solver::Elasticity elasticity = contact.elasticity;
   elasticity.diagonal = part.diagonal();
-  solver::TangentialSolution solution =
-      solve_by_coulomb_method(elasticity, part.grid(), reduced(problem, part));
+  solver::TangentialProblem own = reduced(problem, part);
+  problem = {};  // its fields are large on a fine grid
+  solver::TangentialSolution solution = solve_by_coulomb_method(elasticity, part.grid(), std::move(own));
   const bool usable = solution.status == solver::Status::converged || solution.change <= kIterationGap;
   if (!usable) throw std::runtime_error("the right answer to judge by was not found: " + solution.message);
   solution.traction = part.expanded(std::move(solution.traction), solver::torsion_symmetry());

@@ -83,11 +83,12 @@ std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const GivenContact&
 
 /// The right field under a pressure on the finer mesh, as near to the limit as the field's own loads are.
 solver::TangentialSolution solve_finer(const GivenContact& contact, const solver::Step& load,
-                                       const Grid& fine, const ArrayXd& pressure) {
+                                       const Grid& fine, ArrayXd pressure) {
   solver::TangentialProblem problem = own_problem(contact, load);
   const double own = solver::limit_of(problem, contact.grid).factor;
   problem.friction_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
   problem.initial_displacement = pressure_displacement(contact, fine, pressure);
+  pressure.resize(0);  // large, and no more needed
   leave_out_translations(problem, fine, contact.traction);
   scale_loads(problem, kChildrenOfCell);
   const double limit = solver::limit_of(problem, fine).factor;
@@ -101,9 +102,9 @@ struct Sums {
   double normal, moment, force1, force2;
 };
 
-Sums sums_of(const Grid& grid, const ArrayXd& pressure, const ArrayXd& traction) {
+Sums sums_of(const Grid& grid, double total_pressure, const ArrayXd& traction) {
   const double area = grid.cell_area();
-  return {area * pressure.sum(), area * (traction * solver::rotation_field(grid)).sum(),
+  return {area * total_pressure, area * (traction * solver::rotation_field(grid)).sum(),
           area * traction.head(grid.cells()).sum(), area * traction.tail(grid.cells()).sum()};
 }
 
@@ -176,7 +177,7 @@ class MeshMeasurement {
   void add_field(ArrayXd p, ArrayXd q, const Sums& meant, double twist) {
     const GivenContact field = with_fields(contact_, grid_, std::move(p), std::move(q));
     const LoadErrors loads =
-        load_errors(sums_of(grid_, field.pressure, field.traction), meant, contact_.mean_friction());
+        load_errors(sums_of(grid_, field.pressure.sum(), field.traction), meant, contact_.mean_friction());
     errors.loads = {.normal = std::max(errors.loads.normal, loads.normal),
                     .moment = std::max(errors.loads.moment, loads.moment),
                     .force = std::max(errors.loads.force, loads.force)};
@@ -240,14 +241,17 @@ MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene,
     if (!(pressure.sum() >= (1.0 - kMissedLoad) * sum)) pressure.resize(0);
   }
   if (pressure.size() == 0) pressure = on_fine_cells(contact.grid, contact.pressure);
-  const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
-  const ArrayXd fine_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
   MeshErrors& errors = measurement.errors;
-  errors.moment_limit = solver::free_moment_limit(fine, fine_bound) / kChildrenOfCell;
-  const Sums sums = sums_of(fine, pressure, solution.traction);
-  measurement.add_field(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
-  measurement.add_field(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
-                        solution.twist);
+  errors.moment_limit =
+      solver::free_moment_limit(fine, resampled(contact.friction, contact.grid, fine).bound(pressure)) /
+      kChildrenOfCell;
+  ArrayXd at_centres = sampled(grid, pressure);
+  ArrayXd means = restrict_to(grid, fine, pressure);
+  const double total_pressure = pressure.sum();
+  const solver::TangentialSolution solution = solve_finer(contact, load, fine, std::move(pressure));
+  const Sums sums = sums_of(fine, total_pressure, solution.traction);
+  measurement.add_field(std::move(at_centres), sampled(grid, solution.traction), sums, solution.twist);
+  measurement.add_field(std::move(means), restrict_to(grid, fine, solution.traction), sums, solution.twist);
   if (wide && !is_known) {
     // A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
     errors.deviation.pressure = errors.deviation.tractions;
