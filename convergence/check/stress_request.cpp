@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "analytic/stresses/stress_field.hpp"
-#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/exact_stresses.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/table_text.hpp"
@@ -91,55 +90,6 @@ void find_length_unit(GivenStresses& given, double contact_radius) {
   }
 }
 
-/// Polar components, whose z points out of the body, in the axes of the scene.
-std::array<double, solver::kStresses> in_axes(const analytic::PressureStress& p,
-                                              const analytic::TorsionStress& t, double cosine, double sine) {
-  return {p.rr * cosine * cosine + p.tt * sine * sine - 2.0 * t.rt * cosine * sine,
-          p.rr * sine * sine + p.tt * cosine * cosine + 2.0 * t.rt * cosine * sine,
-          p.zz,
-          (p.rr - p.tt) * cosine * sine + t.rt * (cosine * cosine - sine * sine),
-          -p.rz * cosine + t.tz * sine,
-          -p.rz * sine - t.tz * cosine};
-}
-
-/// None, with the reason, where the scene has no exact stresses.
-std::optional<RightStresses> exact_stresses(const solver::Scene& scene, solver::Body body,
-                                            std::string& reason) {
-  const auto theory = exact_history(scene);
-  std::optional<analytic::LoadingHistory> history;
-  OracleAnswer answer;
-  for (std::size_t k = 0; k < scene.steps.size() * static_cast<std::size_t>(scene.cycles); ++k) {
-    answer = theory->advance(step_of(scene, k));
-    reason = answer.oracle ? answer.oracle->only_normal : answer.reason;
-    if (!reason.empty()) return std::nullopt;
-    reason = "no exact stresses are known here under a tangential force or where pressing slips";
-    if (!answer.oracle->shear || answer.oracle->place.direction != std::array{0.0, 0.0}) return std::nullopt;
-    if (!history) history.emplace(*answer.oracle->friction.bound);
-    history->load_to(answer.oracle->state.moment_ratio);
-  }
-  const double sign = body == solver::Body::lower ? 1.0 : -1.0;
-  const auto at = [oracle = *answer.oracle, history = *history, sign](const std::vector<Point>& points,
-                                                                      double poisson) {
-    const NormalContact& normal = oracle.normal;
-    const analytic::StressField pressed(analytic::LoadingHistory(*normal.profile), *normal.profile);
-    const analytic::StressField twisted(history, *oracle.friction.bound);
-    const double a = oracle.contact_radius, p0 = normal.reference_pressure;
-    const double q0 = sign * oracle.friction.reference_bound;
-    Parts parts;
-    for (const auto& [x1, x2, depth] : points) {
-      const double y1 = x1 - oracle.place.centre[0], y2 = x2 - oracle.place.centre[1];
-      const double radius = std::hypot(y1, y2);
-      const double cosine = radius > 0.0 ? y1 / radius : 1.0, sine = radius > 0.0 ? y2 / radius : 0.0;
-      const auto p = pressed.by_pressure({radius / a, depth / a}, poisson);
-      const auto t = twisted.by_torsion({radius / a, depth / a});
-      parts.push_back({in_axes({p0 * p.rr, p0 * p.tt, p0 * p.zz, p0 * p.rz}, {}, cosine, sine),
-                       in_axes({}, {q0 * t.rt, q0 * t.tz}, cosine, sine)});
-    }
-    return parts;
-  };
-  return RightStresses{answer.oracle->contact_radius, at};
-}
-
 RightStresses solved_stresses(const solver::Scene& scene, solver::Body body, const std::string& reason) {
   const auto solved = [](const solver::Scene& on_grid) {
     auto solution = std::make_shared<const solver::Solution>(solver::solve(on_grid));
@@ -211,7 +161,8 @@ Json stress_request(const solver::Scene& scene, const std::filesystem::path& fil
   GivenStresses given = read_stresses(file, options.columns);
   std::string reason;
   const auto exact = exact_stresses(scene, body, reason);
-  const RightStresses right = exact ? *exact : solved_stresses(scene, body, reason);
+  const RightStresses right =
+      exact ? RightStresses{exact->contact_radius, exact->at} : solved_stresses(scene, body, reason);
   find_length_unit(given, right.contact_radius);
   if (const double terms = static_cast<double>(given.points.size()) * right.terms; terms > kMaxTerms)
     throw InputError(file.string(), fmt::format("{} rows, each a sum over {} cells in contact; allowed: at "

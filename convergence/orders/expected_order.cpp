@@ -102,7 +102,8 @@ const std::vector<ErrorQuantity>& error_quantities() {
       {"traction_error.averaged.l1", "traction L1, cell averages"},
       {"traction_error.averaged.l2", "traction L2, cell averages"},
       {"pressure_error.l1", "pressure L1"},
-      {"pressure_error.l2", "pressure L2"}};
+      {"pressure_error.l2", "pressure L2"},
+      {"stress_error.max", "stresses, 0.4a deep"}};
   return quantities;
 }
 

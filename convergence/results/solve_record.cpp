@@ -327,6 +327,7 @@ void list_on_grid(auto& fields, Is<SolveRecord> auto& record) {
   }
   fields("program", record.program);
   fields("profile", record.profile);
+  fields("stress_error", record.stress_error);
 }
 
 void list_exact(auto& fields, Is<SolveRecord> auto& record) {

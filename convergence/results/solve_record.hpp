@@ -356,6 +356,7 @@ struct SolveRecord {
   std::optional<HistoryRecord> history = {};
   std::optional<ProgramRecord> program = {};
   std::optional<std::vector<ProfilePoint>> profile = {};
+  std::optional<FieldErrorRecord> stress_error = {};
 
   /// Whether it has no answer: it was refused or failed.
   bool is_failed() const { return status == RunStatus::refused || status == RunStatus::failed; }

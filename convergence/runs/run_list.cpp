@@ -17,8 +17,9 @@ namespace slipstick::convergence {
 namespace {
 
 constexpr const char* kAllowedRun = "a run, as --list-runs writes it";
-constexpr std::array kRunKeys{"name",    "scene",  "set",         "rounding",        "variant",
-                              "profile", "fields", "step_before", "program_version", "output"};
+constexpr std::array kRunKeys{"name",        "scene",           "set",          "rounding",
+                              "variant",     "profile",         "stress_error", "fields",
+                              "step_before", "program_version", "output"};
 const std::map<std::string, Rounding> kRoundingWords{
     {"nearest", Rounding::nearest}, {"upward", Rounding::upward}, {"downward", Rounding::downward}};
 
@@ -66,6 +67,7 @@ Json to_json(const RunSpec& spec) {
   }
   if (spec.variant != Variant::none) json["variant"] = to_string(spec.variant);
   if (spec.profile) json["profile"] = true;
+  if (spec.stress_error) json["stress_error"] = true;
   if (!spec.fields.empty()) json["fields"] = spec.fields.string();
   if (spec.step_before) json["step_before"] = true;
   if (!spec.program_version.empty()) json["program_version"] = spec.program_version;
@@ -79,6 +81,7 @@ RunSpec run_of(const Json& json, const std::string& source) {
               .fields = reader.text("fields"),
               .step_before = reader.flag("step_before"),
               .profile = reader.flag("profile"),
+              .stress_error = reader.flag("stress_error"),
               .program_version = reader.text("program_version")};
   if (run.scene.empty()) reader.fail("scene", "a scene file (TOML)");
   if (const std::string word = reader.text("rounding"); !word.empty()) {

@@ -148,6 +148,7 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   }
   if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
   if (spec.profile) text += "\nprofile";
+  if (spec.stress_error) text += "\nstress error";
   if (spec.step_before) text += "\nstep before";
   if (!spec.program_version.empty()) text += "\nversion " + spec.program_version;
   return text;

@@ -46,7 +46,8 @@ struct RunSpec {
   std::filesystem::path fields = {};  ///< gets the fields of the last step; empty: none
   /// step_before_file() gets the fields of the step before, since the slip of the last step starts there.
   bool step_before = false;
-  bool profile = false;  ///< the result has the tractions along two radii
+  bool profile = false;       ///< the result has the tractions along two radii
+  bool stress_error = false;  ///< the result has the error of its stresses, see stress_error()
   /// The version that the scene's program states; the pool runs the program for it, where that is allowed.
   std::string program_version = {};
 };

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
+#include "convergence/oracle/exact_stresses.hpp"
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/make_record.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/run_list.hpp"
@@ -78,6 +80,10 @@ SolveRecord solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCac
   if (!spec.fields.empty()) write_solution_fields(spec.fields, solved.solution, solved.exact);
   if (!spec.fields.empty() && before) write_solution_fields(step_before_file(spec.fields), *before, {});
   if (spec.profile) solved.record.profile = make_profile(solved.solution, solved.exact);
+  if (std::string reason; spec.stress_error) {
+    const FieldError error = stress_error(run.scene, solved.solution, reason);
+    solved.record.stress_error = make_field_error(error, reason);
+  }
   return std::move(solved.record);
 }
 

@@ -197,6 +197,8 @@ std::vector<Series> make_series(const Study& study, std::optional<double> memory
 RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance) {
   RunSpec run{.scene = study.scene, .overrides = grid.overrides};
   run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
+  run.stress_error = std::ranges::any_of(
+      study.quantities, [](const std::string& path) { return path.starts_with("stress_error"); });
   return run;
 }
 

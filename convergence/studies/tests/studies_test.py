@@ -44,6 +44,18 @@ class Studies(ProgramTest):
         self.assertLessEqual(order["low"], 2)
         self.assertEqual((len(series["rows"]), len({row["h"] for row in series["rows"]})), (18, 18))
 
+    def test_order_of_the_stresses(self):
+        """Deeper than a cell the edges are smoothed: second order, with the torsion of a history too."""
+        quantities = "quantities = ['stress_error.l2', 'stress_error.max']"
+        for scene, more in (("paper", "shifts = 3"), ("torsion_loop", ""), ("paper", "set = {'contact.friction' = 0.5}")):
+            series = next(iter(self.study(f"cells = [24, 32, 48, 64]\n{quantities}\n{more}", scene)[0].values()))
+            for path in ("stress_error.l2", "stress_error.max"):
+                order = series["order"][path]
+                self.assertEqual(order["expected"], 2)
+                self.assertAlmostEqual(order["value"], 2, delta=0.4)
+        series = self.study(f"cells = [16, 24]\n{quantities}", "ellipse")[0]["ellipse"]  # whose exact stresses are not known
+        self.assertIsNone(series["order"]["stress_error.max"]["value"])
+
     def test_tolerance_is_tightened_where_stopping_shows(self):
         series, text = self.study("cells = [12, 16, 24]\nset = {'solver.tolerance' = 1e-2}")
         loose = series["paper"]
