@@ -284,6 +284,7 @@ SECTIONS = [
         _paper("friction-laws", "Other laws of friction", exact_figures.friction_laws),
         _paper("bodies-and-cycles", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
         _paper("first-yield", "Where does it yield?", exact_figures.first_yield),
+        _paper("solved-stresses", "Stresses of a solve below the surface", exact_figures.solved_stresses),
         _paper("cycle", "A cycle, computed step by step", exact_figures.computed_cycle),
         _paper("approximations", "Which approximation may be used", exact_figures.approximations),
     ]),

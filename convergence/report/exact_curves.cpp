@@ -175,21 +175,27 @@ Json yield_curve(double friction) {
   return {{"friction", friction}, {"rows", rows}};
 }
 
-/// Von Mises' stress over radius and depth.
+/// Von Mises' stress and the largest shear over radius and depth.
 Json yield_map(double load, double friction) {
   constexpr double kSpacing = 0.04;
   const analytic::StressField field(analytic::from_moment_ratio(load), analytic::hertz_profile());
-  Json depths = Json::array();
+  Json equivalent = Json::array(), shears = Json::array();
   for (int i = 0; i <= 25; ++i) {
-    Json row = Json::array();
+    Json row = Json::array(), shear_row = Json::array();
     for (int j = 0; j <= 35; ++j) {
       const analytic::BodyPoint at{kSpacing * j, kSpacing * i};
-      row.push_back(
-          analytic::severity(field.by_pressure(at, kPoisson), field.by_torsion(at), friction).von_mises);
+      const auto found = analytic::severity(field.by_pressure(at, kPoisson), field.by_torsion(at), friction);
+      row.push_back(found.von_mises);
+      shear_row.push_back(0.5 * found.tresca);
     }
-    depths.push_back(std::move(row));
+    equivalent.push_back(std::move(row));
+    shears.push_back(std::move(shear_row));
   }
-  return {{"friction", friction}, {"moment_ratio", load}, {"spacing", kSpacing}, {"von_mises", depths}};
+  return {{"friction", friction},
+          {"moment_ratio", load},
+          {"spacing", kSpacing},
+          {"von_mises", equivalent},
+          {"shear", shears}};
 }
 
 /// Where the paper's sphere yields first.

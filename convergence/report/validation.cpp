@@ -19,6 +19,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/report/scene_verdict.hpp"
+#include "convergence/report/solved_stresses.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/field_file.hpp"
@@ -152,6 +153,7 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
       run.profile = cells == size.mesh_cells.back();
     }
   }
+  runs["stresses"] = stress_runs(scene, size.mesh_cells);
   add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
   RunSpec& cycle = add("cycle", {});
   cycle.scene = scenes / "torsion_loop.toml";
@@ -384,6 +386,8 @@ PaperValidation validate(const Validation& request, const fs::path& folder, cons
 
   PaperValidation paper;
   paper.figures = exact_curves();
+  Json& yield = paper.figures["first_yield"];
+  yield["solved"] = solved_stresses(scene_file, yield["maps"].back(), results.at("stresses"));
   paper.figures.update(
       Json{{"contact", {{"radius", exact.contact_radius}, {"peak_pressure", exact.normal.peak_pressure}}},
            {"loading_cells", size.loading_cells},

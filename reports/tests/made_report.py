@@ -125,8 +125,12 @@ def small_paper():
                          for x in (0.05, 0.1, 0.2, 0.5)],
         "first_yield": {"poisson": 0.3, "curves": [{"friction": 0.5, "rows": [
             {"moment_ratio": x, "von_mises": 0.62 + max(0, x - 0.5), "radius": x, "depth": 0.48 if x < 0.6 else 0.0} for x in loads]}],
-            "maps": [{"friction": 0.5, "moment_ratio": x, "spacing": 0.5, "von_mises": [[0.1, 0.2, 0.1], [0.6, 0.3, 0.1]]}
-                     for x in (0.0, 0.9)]},
+            "maps": [{"friction": 0.5, "moment_ratio": x, "spacing": 0.5, "von_mises": [[0.1, 0.2, 0.1], [0.6, 0.3, 0.1], [0.5, 0.2, 0.1]],
+                      "shear": [[0.1, 0.1, 0.1], [0.3, 0.2, 0.1], [0.2, 0.1, 0.1]]} for x in (0.0, 0.9)],
+            "solved": {"cells": [8, 8], "planes": [{"plane": plane, "von_mises": [[0.6, 0.3, 0.1], [0.5, 0.3, 0.1]],
+                                                    "shear": [[0.3, 0.2, 0.1], [0.2, 0.2, 0.1]]} for plane in ("x1-x3", "x2-x3")],
+                       "errors": [{"cells": [cells, cells], "stress_error": {"l1": 0.1, "l2": 0.1, "max": 1 / cells**2}}
+                                  for cells in (4, 8)]}},
         "hard": hard(),
         "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
                                             for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},
