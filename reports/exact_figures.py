@@ -230,10 +230,11 @@ def solved_stresses(report, data_dir):
                        f"{np.log(error[-2] / error[-1]) / np.log(cells[-1] / cells[-2]):.2f}"))
     across = value(solved, "cells")[0]
     return FigureEntry(
-        f"A solve on {across:g} × {across:g} cells finds the stresses below the surface, and the place of the largest.",
+        f"A solve on {across:g} × {across:g} cells finds the stresses below the surface, and the place of the largest there.",
         f"The paper’s sphere at {LIMIT}{number(exact, 'moment_ratio'):g} with μ = {number(exact, 'friction'):g}, down from {spacing:g}a, "
         "about one cell. Closed influence coefficients of a cell give the stresses of the solve (Love, 1929; Cerruti). Stars: the largest "
-        "stress in each half. The largest shear is half of Tresca’s stress. At a fixed depth of more than a cell the error is of order two.",
+        "stress in each half. The largest shear is half of Tresca’s stress. At a fixed depth of more than a cell the error is of order two; "
+        "on the surface, where the largest of all is, the jumps between cells dominate.",
         "Four maps of stress by position and depth, von Mises’ stress above and the largest shear below, in two planes. The left half of "
         "each is solved, the right half exact, and both look alike: the stars stand at the same place under the slip ring. Below, "
         "errors at a depth of 0.4a fall with the cells along a line of order two, on log-log axes.", figure, numbers)
