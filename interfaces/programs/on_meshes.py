@@ -11,6 +11,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 LONGEST = 900  # s, of one program on one mesh
+RATIOS = (0.5, 0.9)  # of the limit moment, as in elements.py
 
 
 def found(only=None):
@@ -28,10 +29,16 @@ def said_version(folder, program):
 
 
 def solved(folder, program, scene, faces, output):
-    """The numbers of the program on a mesh with this number of faces across the contact radius."""
-    values = {"scene": Path(scene).resolve(), "folder": output.resolve(), "faces": faces}
-    subprocess.run([word.format(**values) for word in program["command"]], cwd=folder, check=True, timeout=LONGEST)
-    return json.loads((output / "numbers.json").read_text())
+    """The numbers of the program on a mesh with this number of faces across the contact radius, and why some are missing."""
+    values, numbers = {"scene": Path(scene).resolve(), "folder": output.resolve(), "faces": faces}, output / "numbers.json"
+    numbers.unlink(missing_ok=True)
+    try:
+        subprocess.run([word.format(**values) for word in program["command"]], cwd=folder, check=True, timeout=LONGEST)
+        return json.loads(numbers.read_text()), None
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as failed:
+        found = json.loads(numbers.read_text()) if numbers.exists() else {"twist_angle": {}, "cpu_seconds": None, "check": []}
+        why = f"no answer within {LONGEST} s" if isinstance(failed, subprocess.TimeoutExpired) else "its command fails"
+        return found, why
 
 
 def judged(slipstick, scene, field, ratio, twist, words):
@@ -57,13 +64,7 @@ def main():
             continue
         for faces in program["faces"]:
             output = arguments.output / f"{program['name']}-{faces}"
-            try:
-                numbers = solved(folder, program, arguments.scene, faces, output)
-            except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as failed:
-                print(f"{version}, {faces} faces across the contact radius: no answer: {failed}")
-                board += [{"program": version, "faces": faces, "moment_ratio": ratio, "twist": None, "cpu_seconds": None, "check": {
-                    "verdict": "not judged", "why": f"no answer within {LONGEST} s", "judged": []}} for ratio in (0.5, 0.9)]
-                continue
+            numbers, why = solved(folder, program, arguments.scene, faces, output)
             for ratio, twist in numbers["twist_angle"].items():
                 result = judged(arguments.slipstick, arguments.scene, output / f"{ratio}.vtu", ratio, twist, numbers["check"])
                 board.append({"program": version, "faces": faces, "moment_ratio": float(ratio), "twist": twist,
@@ -71,6 +72,10 @@ def main():
                 errors = ", ".join(f"{each['quantity']} {each['value']:.1e}" for each in result["judged"] if each["value"] is not None)
                 print(f"{version}, {faces} faces across the contact radius, {numbers['cpu_seconds']:.0f} CPU s: rotation {twist:.5e} rad "
                       f"at {ratio} of the limit moment\n  {errors}\n  {result['verdict']}: {result['why']}")
+            for ratio in [each for each in RATIOS if f"{each:g}" not in numbers["twist_angle"]]:
+                print(f"{version}, {faces} faces across the contact radius: no answer at {ratio} of the limit moment: {why}")
+                board.append({"program": version, "faces": faces, "moment_ratio": ratio, "twist": None, "cpu_seconds": None, "check": {
+                    "verdict": "not judged", "why": why, "judged": []}})
     if arguments.json:
         arguments.json.write_text(json.dumps({"scene": arguments.scene, "board": board}, indent=1))
 

@@ -17,7 +17,7 @@ def main(slipstick, scenes, name):
         print(f"LEFT OUT: {name} is not installed; make peers installs it")
         return 77
     with tempfile.TemporaryDirectory(prefix="slipstick-meshes-") as output:
-        numbers = on_meshes.solved(folder, program, scene, FACES[name], Path(output))
+        numbers, _ = on_meshes.solved(folder, program, scene, FACES[name], Path(output))
         assert list(numbers["twist_angle"]) == ["0.5", "0.9"], numbers
         for ratio, twist in numbers["twist_angle"].items():
             result = on_meshes.judged(slipstick, scene, Path(output) / f"{ratio}.vtu", ratio, twist, numbers["check"])
