@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """board.py BUILD DOCS [--publish]: one page and one JSON of all programs that `make peers` ran, BUILD/board.md and BUILD/board.json, from
-BUILD/loops.json (simulators by cases), BUILD/on_meshes.json, BUILD/fields.json (fields by scenes) and BUILD/peers.txt (what was left
-out). An earlier BUILD/board.json, or else DOCS/board.json, shows what changed. With --publish the page and the JSON go to DOCS, and the
+BUILD/loops.json (simulators by cases), BUILD/on_meshes.json, BUILD/fields.json (fields by scenes), BUILD/stresses.json and
+BUILD/peers.txt (what was left out). An earlier BUILD/board.json, or else DOCS/board.json, shows what changed. With --publish the page and the JSON go to DOCS, and the
 table of the guide is written anew."""
 
 import argparse
@@ -54,13 +54,25 @@ def of_pages(pages):
 
 def of_meshes(board):
     for each in board:
-        both = [one for one in board if (one["program"], one["faces"]) == (each["program"], each["faces"])]  # at two moments
+        both = [one for one in board if (one["program"], one["faces"]) == (each["program"], each["faces"]) and one["cpu_seconds"]]
         check, error = each["check"], next((one["value"] for one in each["check"]["judged"] if one["quantity"] == "tractions"), None)
         yield {"kind": "mesh", "on": f"paper, {each['moment_ratio']}", "program": each["program"].split(" ")[0],
                "version": each["program"].split(" ", 1)[-1], "variant": f"{each['faces']} faces",
                "cpu_seconds": each["cpu_seconds"] and each["cpu_seconds"] / len(both),
                "verdict": {"good": "green", "bad": "red"}.get(check["verdict"], "none"), "measure": "tractions", "number": error,
                "shown": "" if error is None else f"{100 * abs(error):.2g} %", "cause": check.get("cause"), "why": check["why"]}
+
+
+def of_stresses(board):
+    """The error of the worst component, over the largest von Mises stress. It is that of the mesh if slipstick's is as large."""
+    for each in board:
+        error = max(each["errors"].values(), key=lambda value: value if value == value else math.inf)
+        own = next(one for one in board if one["program"] == "slipstick" and all(one[key] == each[key] for key in ("cells", "moment_ratio")))
+        found, is_mesh = color(error), abs(error / max(own["errors"].values()) - 1) < 0.05
+        yield {"kind": "stress", "on": f"paper, {each['moment_ratio']}", "program": each["program"], "version": each["version"],
+               "variant": f"{each['cells']} cells", "cpu_seconds": each["cpu_seconds"], "verdict": found, "measure": "stresses",
+               "number": error, "shown": f"{100 * error:.2g} %", "cause": None if found == "green" else "mesh" if is_mesh else "unknown",
+               "why": each["why"]}
 
 
 def key(row):
@@ -91,7 +103,7 @@ def grid(rows, numbers=True):
 
 
 def page(result):
-    kinds = {kind: [row for row in result["rows"] if row["kind"] == kind] for kind in ("case", "field", "mesh")}
+    kinds = {kind: [row for row in result["rows"] if row["kind"] == kind] for kind in ("case", "field", "mesh", "stress")}
     changed = result["changes"]
     said = "There is no earlier run." if not changed["since"] else (
         f"Since {changed['since']}, {len(changed['verdicts'])} verdicts changed and {changed['new']} rows are new.")
@@ -104,7 +116,9 @@ def page(result):
             ("field", "Contact solvers by scenes", f"The error of the twist (of the approach, for programs that find only pressure) on the "
              f"finest mesh; green up to {100 * GREEN:g} %, amber up to {100 * AMBER:g} %."),
             ("mesh", "Finite-element programs on meshes of their own", "The error of the tractions at two moments over the limit; `check` "
-             "gives the verdict.")):
+             "gives the verdict."),
+            ("stress", "Stresses below the surface", "The largest error of a component over the largest von Mises stress, at depths of 0.05 "
+             f"to 2 contact radii and two moments over the limit; green up to {100 * GREEN:g} %, amber up to {100 * AMBER:g} %.")):
         if kinds[kind]:
             text += f"## {title}\n\n{about}\n\n{grid(kinds[kind])}\n"
     text += "## Not green, and why\n\n| program | case or scene | verdict | cause | explanation |\n|---|---|---|---|---|\n"
@@ -128,8 +142,9 @@ def main():
     parser.add_argument("docs", type=Path)
     parser.add_argument("--publish", action="store_true")
     words = parser.parse_args()
-    loops, meshes, fields = (read(words.build / f"{name}.json") for name in ("loops", "on_meshes", "fields"))
-    rows = [*loops.get("rows", []), *of_pages(fields.get("pages", [])), *of_meshes(meshes.get("board", []))]
+    loops, meshes, fields, stresses = (read(words.build / f"{name}.json") for name in ("loops", "on_meshes", "fields", "stresses"))
+    rows = [*loops.get("rows", []), *of_pages(fields.get("pages", [])), *of_meshes(meshes.get("board", [])),
+            *of_stresses(stresses.get("board", []))]
     lines = (words.build / "peers.txt").read_text().splitlines()
     result = {"measured": time.strftime("%Y-%m-%d"), "machine": next((line.split(": ")[-1] for line in lines if "model name" in line), ""),
               "left_out": [line.removeprefix("LEFT OUT: ") for line in lines if line.startswith("LEFT OUT: ")],

@@ -2,6 +2,7 @@
 rotation; the rotation for the scene's moment is found by several runs."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -26,11 +27,34 @@ def run(folder, *words):
 
 
 def version():
-    """CONTACT prints its version at the start of each run, also of an empty one."""
+    """CONTACT prints its version at the start of each run, also of an empty one; of its source, the revision."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "empty.inp").write_text(" 0  MODULE\n")
         line = next(each for each in run(folder, "2", "empty").splitlines() if "Version" in each)
-    return line.split("Version:")[1].strip(" |")
+    revision = re.search(r"Revision: (\d+)", line)
+    return f"r{revision[1]}" if revision else line.split("Version:")[1].strip(" |")
+
+
+def deck(grid, gap, load, friction, poisson, shear, motion, points=None):
+    """The input of a contact on a grid (cells, first centre and cell size in mm along both axes) with this gap: pressed, then moved by
+    motion (mm, mm, rad). With points, three lists of coordinates (mm), also the stresses in the upper body at each combination."""
+    (n1, n2), (first1, first2), (h1, h2) = grid
+    lines = [f""" 3  MODULE
+ 20110{3 if points else 0}   P-B-T-N-F-S: a shift from rest, under a normal force, with a motion
+ 022020   L-D-C-M-Z-E: Coulomb's friction, tractions constant in each cell
+ 0002001  H-G-I-A-O-W-R: all cells into the .mat file
+ 9999 100 30 1 1e-10                             MAXGS, MAXIN, MAXNR, MAXOUT, EPS
+ {load} {motion[0]} {motion[1]} {motion[2]}  FN, CKSI, CETA, CPHI
+ {friction} {friction}         FSTAT, FKIN
+ {poisson} {poisson} {shear} {shear}             POISS 1, 2, GG 1, 2
+ 3                                               IPOTCN
+ {n1} {n2} {first1} {first2} {h1} {h2}  MX, MY, XC1, YC1, DX, DY
+ 9 1                                             IBASE, IPLAN""", *(f"{each:.16e}" for each in gap.T.ravel())]
+    if points:
+        counts = " ".join(str(len(each)) for each in points)
+        lines += [" 2 0  MATFIL, OUTPUT: all components", f" 9  ISUBS: points\n {counts}  NX, NY, NZ",
+                  *(f" {each:.16e}" for axis in points for each in axis), " 0  ISUBS"]
+    return "\n".join([*lines, " 0  MODULE\n"])
 
 
 def main():
@@ -39,24 +63,13 @@ def main():
     exchange.require(exchange.pressure is None, "the pressure is given: CONTACT solves for it")
     (n1, n2), (h1, h2) = exchange.cells, (h / MILLI for h in exchange.cell_size)
     shear, poisson = 2 * exchange.shear_modulus / MEGA, exchange.poisson_ratio  # similar bodies: each has half of the compliance
-    gap = "\n".join(f"{each:.16e}" for each in exchange.gap.T.ravel() / MILLI)
 
     def responded(motion, folder):
         """Pressure and tractions on the half-space, which is body 2; CONTACT writes the tractions on body 1."""
-        (Path(folder) / "scene.inp").write_text(f""" 3  MODULE
- 201100   P-B-T-N-F-S: a shift from rest, under a normal force, with a motion
- 022020   L-D-C-M-Z-E: Coulomb's friction, tractions constant in each cell
- 0002001  H-G-I-A-O-W-R: all cells into the .mat file
- 9999 100 30 1 1e-10                             MAXGS, MAXIN, MAXNR, MAXOUT, EPS
- {exchange.load} {motion[0] / MILLI} {motion[1] / MILLI} {motion[2]}  FN, CKSI, CETA, CPHI
- {exchange.friction} {exchange.friction}         FSTAT, FKIN
- {poisson} {poisson} {shear} {shear}             POISS 1, 2, GG 1, 2
- 3                                               IPOTCN
- {n1} {n2} {exchange.x1[0, 0] / MILLI} {exchange.x2[0, 0] / MILLI} {h1} {h2}  MX, MY, XC1, YC1, DX, DY
- 9 1                                             IBASE, IPLAN
-{gap}
- 0  MODULE
-""")
+        shift = motion / np.array([MILLI, MILLI, 1])
+        first = exchange.x1[0, 0] / MILLI, exchange.x2[0, 0] / MILLI
+        text = deck(((n1, n2), first, (h1, h2)), exchange.gap / MILLI, exchange.load, exchange.friction, poisson, shear, shift)
+        (Path(folder) / "scene.inp").write_text(text)
         run(folder, "2", "scene")
         rows = np.loadtxt(Path(folder) / "scene.0001.mat", comments="%", skiprows=11)[-n1 * n2:]
         pressure, *on_body_1 = MEGA * rows[:, 4:7].T.reshape(3, n2, n1).transpose(0, 2, 1)
@@ -71,4 +84,5 @@ def main():
     exchange.answer(solve)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -24,6 +24,11 @@ def case(verdict):
             "missed": 0.0, "cpu_seconds": 1.5}
 
 
+def stress(name, error, cells=32):
+    return {"program": name, "version": "1", "cells": cells, "moment_ratio": 0.5, "cpu_seconds": 0.5, "verdict": "bad", "why": "s33 is off",
+            "errors": {"s11": 0.001, "s33": error}}
+
+
 class Board(unittest.TestCase):
     def made(self, folder, verdict, programs):
         (folder / "loops.json").write_text(json.dumps({"rows": [case(verdict)]}))
@@ -47,6 +52,17 @@ class Board(unittest.TestCase):
             self.assertEqual([(each["before"], each["now"]) for each in result["changes"]["verdicts"]], [("green", "red")])
             self.assertIn("- P, own, `memory`: red, before green.", text)
             self.assertEqual(result["changes"]["new"], 0)
+
+    def test_stresses_are_judged_by_their_worst_component(self):
+        rows = list(board.of_stresses([stress("slipstick", 0.025), stress("same", 0.0251), stress("off", 0.4), stress("none", float("nan")),
+                                       stress("slipstick", 0.004, 64), stress("same", 0.02, 64)]))
+        self.assertEqual([(row["verdict"], row["cause"]) for row in rows], [
+            ("amber", "mesh"), ("amber", "mesh"), ("red", "unknown"), ("red", "unknown"), ("green", None), ("amber", "unknown")])
+
+    def test_seconds_of_a_mesh_are_shared_by_its_answers(self):
+        given = [{"program": "K 1", "faces": 4, "moment_ratio": ratio, "cpu_seconds": seconds, "check": {"verdict": "bad", "why": "", "judged": []}}
+                 for ratio, seconds in ((0.5, 100.0), (0.9, None))]
+        self.assertEqual([row["cpu_seconds"] for row in board.of_meshes(given)], [100.0, None])
 
     def test_no_number_is_red(self):
         self.assertEqual([board.color(error) for error in (0.01, 0.05, 0.0501, float("nan"))], ["green", "amber", "red", "red"])
