@@ -31,7 +31,7 @@ constexpr double kCorrectionCells = 96.0;
 constexpr double kOfChange = 1.5;
 constexpr double kOfMeshes = 0.5;
 constexpr double kOfCells = 8e-3;
-constexpr double kNarrowestRing = 0.02;
+constexpr double kLeastRing = 0.02;
 /// Part of these cells that the contact must fill, at least, along its diameter.
 constexpr double kPathAcross = 0.5;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
@@ -248,7 +248,7 @@ std::optional<PathCorrection> path_correction(const Scene& scene, const Solution
   const double change = fine[0] + few[1] + few[1] / 3.0;
   const double second = (4.0 * few[1] - few[0]) / 45.0;  // of an error c/n + d/n^2
   const double apart = std::abs(fine[0] - few[0]);
-  const double ring = std::fmax(1.0 - solution.stick_radius / solution.contact_radius, kNarrowestRing);
+  const double ring = std::fmax(1.0 - solution.stick_radius / solution.contact_radius, kLeastRing);
   return PathCorrection{change + second, kOfChange * std::abs(change) / (cells * ring) + kOfMeshes * apart +
                                              kOfCells / (cells * cells) + std::abs(second)};
 }
