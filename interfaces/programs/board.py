@@ -64,7 +64,7 @@ def of_meshes(board):
 
 
 def of_stresses(board):
-    """The error of the worst component, over the largest von Mises stress. It is that of the mesh if slipstick's is as large."""
+    """The error of the worst component, over the largest von Mises stress. The mesh is its cause if slipstick's error is as large."""
     for each in board:
         error = max(each["errors"].values(), key=lambda value: value if value == value else math.inf)
         own = next(one for one in board if one["program"] == "slipstick" and all(one[key] == each[key] for key in ("cells", "moment_ratio")))

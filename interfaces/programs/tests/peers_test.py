@@ -1,5 +1,5 @@
-"""peers_test.py PROGRAM SCENES NAME: compares another program's answers with this one's; both solve the same discrete problem. Skipped
-(77) if that program is not installed."""
+"""peers_test.py PROGRAM SCENES NAME: compares another program's answers with this one's; both solve the same discrete problem. A program
+with a file stresses.py is also compared below the surface. Skipped (77) if the program is not installed."""
 
 import json
 import subprocess
@@ -48,6 +48,15 @@ def main(program, scenes, name):
         assert abs(other / one - 1) <= WITHIN, (scene, number, one, other)
     done, _ = solved(program, Path(scenes) / "spence.toml", (), "--program", file)  # pressure and tractions in turns
     assert done.returncode == 2, done.stdout
+    if (PROGRAMS / name / "stresses.py").exists():
+        sys.path.insert(0, str(PROGRAMS))
+        import stresses
+        with tempfile.TemporaryDirectory() as folder:
+            case = stresses.Case(program, Path(scenes) / "paper.toml", Path(folder), 64, 0.9)
+            theirs, ours = (case.judged(each, "", case.solved_by(name) if each == name else 0.0) for each in (name, "slipstick"))
+        assert theirs["verdict"] == "good", theirs["why"]
+        for component, error in ours["errors"].items():  # the points are not symmetric in x1 and x2
+            assert abs(theirs["errors"][component] - error) <= 2e-4, (component, theirs, ours)
     return 0
 
 
