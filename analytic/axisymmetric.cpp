@@ -19,9 +19,8 @@ using std::numbers::pi;
 /// (1 - c)(1 + c), the square of the modulus that belongs to c.
 double squared_modulus(StickRadius c) { return c.complement * (1 + c.ratio); }
 
-// With f = E, K or B of modulus sqrt(1 - s^2) and -H' = f/s, M and M_lim - M are integrals of s^2 f. Both
-// integrands are positive: neither cancels as Eq. (5) does. Each integral is a power series, of y = 1 - c^2
-// or of c^2, up to 1/2.
+// With f = E, K or B of modulus sqrt(1 - s^2) and -H' = f/s, M and M_lim - M are integrals of s^2 f. Both integrands
+// are positive: neither cancels as Eq. (5) does. Each integral is a power series, of y = 1 - c^2 or of c^2, up to 1/2.
 
 /// integral_c^1 s^2 f ds, per f(c = 1), over y: half the integral of sqrt(1 - y) f, term by term.
 constexpr Table upper_series(const series::Exact& taylor) {
@@ -30,8 +29,7 @@ constexpr Table upper_series(const series::Exact& taylor) {
   return series::rounded(integrated);
 }
 
-/// integral_0^c s^m f ds over c^(m + 1), of the terms with a power of c: log ln(1/c) + constant, term by
-/// term.
+/// integral_0^c s^m f ds over c^(m + 1), of the terms with a power of c: log ln(1/c) + constant, term by term.
 struct LowerSeries {
   Table log;
   Table constant;
@@ -61,8 +59,8 @@ struct MomentSeries {
       return {.excess = excess, .deficit = slip_share - excess};
     }
     const double x = c.ratio * c.ratio;
-    const double deficit = scale * x * c.ratio *
-                           (-std::log(c.ratio) * series::sum(lower.log, x) + series::sum(lower.constant, x));
+    const double deficit =
+        scale * x * c.ratio * (-std::log(c.ratio) * series::sum(lower.log, x) + series::sum(lower.constant, x));
     return {.excess = slip_share - deficit, .deficit = deficit};
   }
 };
@@ -83,16 +81,13 @@ constexpr double kTiny = 1e-9;
 class Hertz final : public Profile {
  public:
   Hertz()
-      : Profile({.name = "hertz",
-                 .reference_pressure = "peak pressure",
-                 .load = 2 * pi / 3,
-                 .moment_limit = 3 * pi / 16}) {}
+      : Profile(
+            {.name = "hertz", .reference_pressure = "peak pressure", .load = 2 * pi / 3, .moment_limit = 3 * pi / 16}) {
+  }
 
   double pressure(double radius) const override { return std::sqrt((1 - radius) * (1 + radius)); }
 
-  double twist_integral(StickRadius c) const override {
-    return squared_modulus(c) * complete_elliptic(c.ratio).d;
-  }
+  double twist_integral(StickRadius c) const override { return squared_modulus(c) * complete_elliptic(c.ratio).d; }
   double twist_slope(StickRadius c) const override { return complete_elliptic(c.ratio).e; }
   double punch_density(StickRadius s) const override { return s.ratio; }
 
@@ -116,9 +111,7 @@ class Hertz final : public Profile {
 
 class Cone final : public Profile {
  public:
-  Cone()
-      : Profile({.name = "cone", .reference_pressure = "mean pressure", .load = pi, .moment_limit = pi / 6}) {
-  }
+  Cone() : Profile({.name = "cone", .reference_pressure = "mean pressure", .load = pi, .moment_limit = pi / 6}) {}
 
   double pressure(double radius) const override {
     const double excess = (1 - radius) / radius;  // of 1/r over 1
@@ -138,8 +131,7 @@ class Cone final : public Profile {
     const double x = c.ratio * c.ratio;
     const double log = -std::log(c.ratio);
     const double leading = log + 2 * std::numbers::ln2;
-    return leading * leading / 2 - pi * pi / 12 -
-           (log * series::sum(kLower.log, x) + series::sum(kLower.constant, x));
+    return leading * leading / 2 - pi * pi / 12 - (log * series::sum(kLower.log, x) + series::sum(kLower.constant, x));
   }
   double twist_slope(StickRadius c) const override { return complete_elliptic(c.ratio).k; }
   double punch_density(StickRadius) const override { return 1; }
@@ -164,8 +156,7 @@ class Cone final : public Profile {
     const double rim = std::sqrt((inward + c.complement) * (1 + r));
     const double rising = c.ratio + depth;  // s = (rising e^u + r^2/rising e^-u)/2 from u = 0 at s = c
     const double falling = r * (r / rising);
-    const double end =
-        std::min(kNegligible, std::log1p((c.complement + squared_modulus(c) / (rim + depth)) / rising));
+    const double end = std::min(kNegligible, std::log1p((c.complement + squared_modulus(c) / (rim + depth)) / rising));
     const double start = r > 0 ? std::log(rising / r) : kNegligible;
     double sum = 0;
     for (double from = 0; from < end;) {
@@ -219,8 +210,7 @@ class FlatPunch final : public Profile {
     if (c.ratio < kTiny)
       return 2 / pi * std::atan2(r, std::sqrt(inward) * std::sqrt(c.ratio + r));  // (2/pi) arcsin(r/c)
     const double rj = carlson_rj(0, c.ratio * c.ratio, 1, inside / rim);
-    return 2 / pi * r * std::sqrt(inside) / rim *
-           (complete_elliptic(c.ratio).k + squared_modulus(c) / (3 * rim) * rj);
+    return 2 / pi * r * std::sqrt(inside) / rim * (complete_elliptic(c.ratio).k + squared_modulus(c) / (3 * rim) * rj);
   }
 };
 

@@ -16,8 +16,7 @@ struct StickRadius {
 
 /// The moment over M_lim, split so that neither end cancels: M/M_lim = full_stick + excess = 1 - deficit.
 struct MomentShare {
-  double
-      excess;  ///< beyond what full stick carries (all of M/M_lim where the pressure is finite at the edge)
+  double excess;   ///< beyond what full stick carries (all of M/M_lim where the pressure is finite at the edge)
   double deficit;  ///< 1 - M/M_lim
 };
 
@@ -28,9 +27,8 @@ struct SlipPart {
   double energy_lost;
 };
 
-/// An axisymmetric contact: its pressure p(r), and the functions of it that torsion needs. Lengths over the
-/// contact radius a, pressure over a reference p0 (each profile says which), combined modulus G, friction mu.
-/// With
+/// An axisymmetric contact: its pressure p(r), and the functions of it that torsion needs. Lengths over the contact
+/// radius a, pressure over a reference p0 (each profile says which), combined modulus G, friction mu. With
 ///   H(s) = integral_s^1 p(r)/sqrt(r^2 - s^2) dr
 /// superposed twists of flat punches of radii c..1 (Jaeger 1995) are the slip-stick solution: twist
 /// phi = mu H(c)/(2 G), moment M = (8/3) mu (integral_c^1 s^3 (-H'(s)) ds + H(1)), stick-zone traction
@@ -51,8 +49,7 @@ class Profile {
   double moment_limit() const { return constants_.moment_limit; }
   /// H(1): not zero only where the pressure grows at the edge like 1/sqrt(1 - r^2), as under a flat punch.
   double edge() const { return constants_.edge; }
-  /// Largest M/M_lim at which everything sticks, (8/3) H(1) over M_lim; and the effect of slip, to all
-  /// digits.
+  /// Largest M/M_lim at which everything sticks, (8/3) H(1) over M_lim; and the effect of slip, to all digits.
   double full_stick() const { return 1 - slip_share(); }
   double slip_share() const { return constants_.slip_share; }
 

@@ -28,8 +28,7 @@ double twist_gain(const Profile& profile, StickRadius c, StickRadius s) {
 template <class Weight>
 double slip_integral(const Profile& profile, StickRadius c, double relative, Weight weight) {
   if (c.complement == 0) return 0;
-  // s = 1 - (1 - c) t keeps the digits of 1 - s, and the gain over H(c) keeps the digits of the smallest
-  // loads.
+  // s = 1 - (1 - c) t keeps the digits of 1 - s, and the gain over H(c) keeps the digits of the smallest loads.
   const double deep = profile.twist_integral(c);
   const double integral = gsl::integral(
       [&](double t) {
@@ -48,8 +47,7 @@ StickRadius stick_radius(const TorsionState& state) {
 /// M = (8/3) mu (c^3 H(c) + 3 integral_c^1 s^2 H(s) ds), and the difference of the two is one integral.
 double slip_twist(const TorsionState& state, const Profile& profile) {
   if (const auto part = profile.slip_part(stick_radius(state))) return part->twist;
-  return 3 / (2 * profile.load()) *
-         slip_integral(profile, stick_radius(state), 1e-14, [](StickRadius) { return 1.0; });
+  return 3 / (2 * profile.load()) * slip_integral(profile, stick_radius(state), 1e-14, [](StickRadius) { return 1.0; });
 }
 
 }  // namespace

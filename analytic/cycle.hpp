@@ -14,10 +14,10 @@ namespace slipstick::analytic {
 
 /// A contact somewhere along its history.
 struct CycleState {
-  double moment_ratio;  ///< M/M_lim
-  double moment;        ///< M/(mu W a)
-  double twist;         ///< G a^2 phi/(mu W)
-  double stick_ratio;   ///< front of the newest branch's slip, over a; what older ones left may lie within
+  double moment_ratio;       ///< M/M_lim
+  double moment;             ///< M/(mu W a)
+  double twist;              ///< G a^2 phi/(mu W)
+  double stick_ratio;        ///< front of the newest branch's slip, over a; what older ones left may lie within
   double tangent_stiffness;  ///< (dM/dphi)/(G a^3) on going on; that of full stick on turning back
   double dissipated;         ///< energy lost since the first loading began
 };
@@ -69,16 +69,14 @@ class LoadingHistory {
   double lost_in_closed_loops_ = 0;
 };
 
-/// The states from no load through each of the turning points (M/M_lim), these included: `points_per_branch`
-/// (at least 1, or std::domain_error) on each branch beyond its start, closer towards its ends, where the
-/// curve bends.
+/// The states from no load through each of the turning points (M/M_lim), these included: `points_per_branch` (at least
+/// 1, or std::domain_error) on each branch beyond its start, closer towards its ends, where the curve bends.
 std::vector<CycleState> loading_curve(const std::vector<double>& turning_points, int points_per_branch,
                                       const Profile& profile = hertz_profile());
 
-/// Energy lost in a cycle between M and -M, the area of the loop in the plane of moment and twist: four times
-/// the loss of the first loading to M, since slip on either branch is twice as large. Relative error below
-/// 1e-14, plus the effect of an ulp of the argument. Zero while everything sticks, as under a flat punch up
-/// to its full_stick().
+/// Energy lost in a cycle between M and -M, the area of the loop in the plane of moment and twist: four times the loss
+/// of the first loading to M, since slip on either branch is twice as large. Relative error below 1e-14, plus the
+/// effect of an ulp of the argument. Zero while everything sticks, as under a flat punch up to its full_stick().
 double energy_lost_per_cycle(double moment_ratio, const Profile& profile = hertz_profile());
 /// The same from the state of first loading, for loads that a ratio does not resolve; to a given relative
 /// error. A larger error reduces the time for a tabulated profile to a tenth.

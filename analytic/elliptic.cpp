@@ -24,8 +24,7 @@ CompleteElliptic by_series(double kp) {
   static constexpr auto kConstantE = series::rounded(series::logarithmic_e().constant);
   const double x = kp * kp;
   const auto sum = [&](const series::Table& log, const series::Table& constant) {
-    return -std::log(kp) * series::sum(log, x, kLogarithmicTerms) +
-           series::sum(constant, x, kLogarithmicTerms);
+    return -std::log(kp) * series::sum(log, x, kLogarithmicTerms) + series::sum(constant, x, kLogarithmicTerms);
   };
   const double k = sum(kLogK, kConstantK);
   const double e = sum(kLogE, kConstantE);
@@ -70,8 +69,6 @@ double carlson_rf(double x, double y, double z) { return gsl::evaluate(gsl_sf_el
 
 double carlson_rd(double x, double y, double z) { return gsl::evaluate(gsl_sf_ellint_RD_e, x, y, z); }
 
-double carlson_rj(double x, double y, double z, double p) {
-  return gsl::evaluate(gsl_sf_ellint_RJ_e, x, y, z, p);
-}
+double carlson_rj(double x, double y, double z, double p) { return gsl::evaluate(gsl_sf_ellint_RJ_e, x, y, z, p); }
 
 }  // namespace slipstick::analytic

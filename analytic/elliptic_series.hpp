@@ -13,8 +13,7 @@
 namespace slipstick::analytic::series {
 
 constexpr std::size_t kTerms = 50;
-using Exact =
-    std::array<long double, kTerms>;  ///< while coefficients are made: no rounding is left in doubles
+using Exact = std::array<long double, kTerms>;  ///< while coefficients are made: no rounding is left in doubles
 using Table = std::array<double, kTerms>;
 
 constexpr Table rounded(const Exact& exact) {
@@ -61,8 +60,7 @@ struct Logarithmic {
 /// d(n) of DLMF 19.12: d(0) = 2 ln 2, d(n + 1) = d(n) - 2/((2n + 1)(2n + 2)).
 constexpr Exact logarithmic_shift() {
   Exact d{2 * std::numbers::ln2_v<long double>};
-  for (std::size_t n = 1; n < kTerms; ++n)
-    d[n] = d[n - 1] - 2.0L / static_cast<long double>((2 * n - 1) * (2 * n));
+  for (std::size_t n = 1; n < kTerms; ++n) d[n] = d[n - 1] - 2.0L / static_cast<long double>((2 * n - 1) * (2 * n));
   return d;
 }
 
@@ -79,8 +77,7 @@ constexpr Logarithmic logarithmic_e() {
   Logarithmic series{.log = {0}, .constant = {1}};
   for (std::size_t n = 0; n + 1 < kTerms; ++n) {
     series.log[n + 1] = coefficient[n] / 2;
-    series.constant[n + 1] =
-        coefficient[n] / 2 * (d[n] - 1.0L / static_cast<long double>((2 * n + 1) * (2 * n + 2)));
+    series.constant[n + 1] = coefficient[n] / 2 * (d[n] - 1.0L / static_cast<long double>((2 * n + 1) * (2 * n + 2)));
   }
   return series;
 }

@@ -15,14 +15,12 @@ namespace slipstick::analytic::gsl {
 
 namespace {
 
-/// A C++ function as GSL calls it. An exception must not cross GSL's C frames: it waits here until they are
-/// left.
+/// A C++ function as GSL calls it. An exception must not cross GSL's C frames: it waits here until they are left.
 class Callback {
  public:
   explicit Callback(const RealFunction& f) : f_(f) { turn_abort_handler_off(); }
   gsl_function handle() {
-    return {.function = [](double x, void* self) { return static_cast<Callback*>(self)->call(x); },
-            .params = this};
+    return {.function = [](double x, void* self) { return static_cast<Callback*>(self)->call(x); }, .params = this};
   }
   /// Throws what the function threw, or else what GSL's status says.
   void check(int status) const {
@@ -73,8 +71,8 @@ double root(const RealFunction& f, double low, double high) {
   int status = GSL_CONTINUE;
   for (int i = 0; i < kMaxIterations && status == GSL_CONTINUE; ++i) {
     callback.check(gsl_root_fsolver_iterate(solver.get()));
-    status = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
-                                    gsl_root_fsolver_x_upper(solver.get()), 0, kRelative);
+    status = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()), gsl_root_fsolver_x_upper(solver.get()), 0,
+                                    kRelative);
   }
   check(status);
   return gsl_root_fsolver_root(solver.get());
@@ -85,11 +83,9 @@ double integral(const RealFunction& f, double low, double high, double relative)
 
   Callback callback(f);
   gsl_function function = callback.handle();
-  const auto workspace =
-      own(gsl_integration_cquad_workspace_alloc(kIntervals), gsl_integration_cquad_workspace_free);
+  const auto workspace = own(gsl_integration_cquad_workspace_alloc(kIntervals), gsl_integration_cquad_workspace_free);
   double result = 0;
-  callback.check(
-      gsl_integration_cquad(&function, low, high, 0, relative, workspace.get(), &result, nullptr, nullptr));
+  callback.check(gsl_integration_cquad(&function, low, high, 0, relative, workspace.get(), &result, nullptr, nullptr));
   return result;
 }
 

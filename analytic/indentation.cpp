@@ -65,8 +65,7 @@ double axis_ratio(double radius_ratio) {
     const double b2 = std::exp(2 * t);
     return std::log(carlson_rd(0, 1, b2) / carlson_rd(0, b2, 1) / radius_ratio);
   };
-  // b/a is about radius_ratio^(-2/3), and always between the powers -1 and -1/2; the margin serves ratios
-  // near 1.
+  // b/a is about radius_ratio^(-2/3), and always between the powers -1 and -1/2; the margin serves ratios near 1.
   constexpr double kMargin = 0.1;
   const double log_ratio = std::log(radius_ratio);
   return std::exp(gsl::root(mismatch, -log_ratio - kMargin, -log_ratio / 2 + kMargin));
@@ -83,9 +82,7 @@ Indentation indent_sphere(double load, double radius, double effective_modulus) 
 Indentation indent_cone(double load, double slope, double effective_modulus) {
   require_all_positive({{"load", load}, {"slope", slope}, {"effective modulus", effective_modulus}});
   const double a = std::sqrt(load / effective_modulus * (2 / pi) / slope);
-  return {.contact_radius = a,
-          .approach = pi / 2 * slope * a,
-          .reference_pressure = effective_modulus / 2 * slope};
+  return {.contact_radius = a, .approach = pi / 2 * slope * a, .reference_pressure = effective_modulus / 2 * slope};
 }
 
 Indentation indent_flat_punch(double load, double radius, double effective_modulus) {
@@ -96,25 +93,21 @@ Indentation indent_flat_punch(double load, double radius, double effective_modul
 }
 
 Indentation indent_power(double load, double exponent, double coefficient, double effective_modulus) {
-  require_all_positive({{"load", load},
-                        {"exponent", exponent},
-                        {"coefficient", coefficient},
-                        {"effective modulus", effective_modulus}});
+  require_all_positive(
+      {{"load", load}, {"exponent", exponent}, {"coefficient", coefficient}, {"effective modulus", effective_modulus}});
   const double n = exponent;
   // Approach kappa B a^n, and W = 2 E* n/(n + 1) a times that.
   const double kappa = std::sqrt(pi) * gamma_ratio(n);
   const double over_modulus = load / effective_modulus * (n + 1) / (2 * n);
   const double a = power_radius(over_modulus, kappa, coefficient, n);
-  return {.contact_radius = a,
-          .approach = over_modulus / a,
-          .reference_pressure = mean_pressure(load, a) * (n + 1) / 2};
+  return {
+      .contact_radius = a, .approach = over_modulus / a, .reference_pressure = mean_pressure(load, a) * (n + 1) / 2};
 }
 
 RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, double corner_radius,
                                              double effective_modulus) {
   require_positive("load", load);
-  if (!(flat_radius >= 0 && std::isfinite(flat_radius)))
-    out_of_range("flat radius", flat_radius, ">= 0 and finite");
+  if (!(flat_radius >= 0 && std::isfinite(flat_radius))) out_of_range("flat radius", flat_radius, ">= 0 and finite");
   require_positive("corner radius", corner_radius);
   require_positive("effective modulus", effective_modulus);
   const double sphere = indent_sphere(load, corner_radius, effective_modulus).contact_radius;
@@ -122,16 +115,13 @@ RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, do
   const double a = std::hypot(flat_radius, s);
   // g(a) = a/R (s - b arctan(s/b)).
   const double approach = s / corner_radius * (s / a) * s * (1 - corner_share(flat_radius / s));
-  return {
-      .contact = {.contact_radius = a, .approach = approach, .reference_pressure = mean_pressure(load, a)},
-      .flat_ratio = flat_radius / a};
+  return {.contact = {.contact_radius = a, .approach = approach, .reference_pressure = mean_pressure(load, a)},
+          .flat_ratio = flat_radius / a};
 }
 
 HertzEllipse hertz_ellipse(double load, double radius_1, double radius_2, double effective_modulus) {
-  require_all_positive({{"load", load},
-                        {"radius 1", radius_1},
-                        {"radius 2", radius_2},
-                        {"effective modulus", effective_modulus}});
+  require_all_positive(
+      {{"load", load}, {"radius 1", radius_1}, {"radius 2", radius_2}, {"effective modulus", effective_modulus}});
   // The semi-ellipsoidal pressure's displacement (Johnson 1985, Eqs. (3.63) and (4.26)), its integrals as
   // Carlson's: curvature 1/R = W/(pi E*) R_D(0, b^2, a^2) along a, approach 3 W/(2 pi E*) R_F(0, a^2, b^2).
   const auto [small_radius, large_radius] = std::minmax(radius_1, radius_2);

@@ -10,8 +10,7 @@ struct Indentation {
   double reference_pressure;  ///< the p0 of the profile with this shape's name
 };
 
-// Each throws std::domain_error, with name and value, unless all are positive and finite (a flat radius may
-// be 0).
+// Each throws std::domain_error, with name and value, unless all are positive and finite (a flat radius may be 0).
 
 /// Sphere or paraboloid; p0 is the peak (Hertz).
 Indentation indent_sphere(double load, double radius, double effective_modulus);
@@ -25,8 +24,7 @@ Indentation indent_flat_punch(double load, double radius, double effective_modul
 /// Gap coefficient * r^exponent, the coefficient in m^(1 - exponent); p0 is (exponent + 1)/2 of the mean.
 Indentation indent_power(double load, double exponent, double coefficient, double effective_modulus);
 
-/// Flat out to a radius, then the gap (r - flat_radius)^2/(2 corner_radius) (Ciavarella 1999); p0 is the
-/// mean.
+/// Flat out to a radius, then the gap (r - flat_radius)^2/(2 corner_radius) (Ciavarella 1999); p0 is the mean.
 struct RoundedPunchIndentation {
   Indentation contact;
   double flat_ratio;  ///< flat radius over contact radius; 1 where the load does not reach into the corner

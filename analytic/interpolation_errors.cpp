@@ -15,8 +15,7 @@ using Points = std::vector<PressurePoint>;
 
 /// The error at a point of the interpolant without it; the point is neither the first nor the last.
 double misfit(const Points& points, std::size_t left_out) {
-  constexpr std::size_t kReach =
-      3;  // two neighbours on either side shape a piece; the third, ends of its own
+  constexpr std::size_t kReach = 3;  // two neighbours on either side shape a piece; the third, ends of its own
   const std::size_t from = left_out - std::min(left_out, kReach);
   const std::size_t to = std::min(points.size(), left_out + kReach + 1);
   Points rest;
@@ -45,8 +44,7 @@ Points thinned(const Points& points, std::size_t from, std::size_t to, std::size
   return rest;
 }
 
-/// With the pressures of a stretch, its first point included, moved by `factor` times `by`, but no lower than
-/// half.
+/// With the pressures of a stretch, its first point included, moved by `factor` times `by`, but no lower than half.
 Points moved(Points points, std::size_t from, std::size_t to, const std::vector<double>& by, double factor) {
   for (std::size_t i = from; i < to; ++i)
     points[i].pressure = std::max(points[i].pressure + factor * by[i], points[i].pressure / 2);
@@ -100,16 +98,14 @@ std::vector<std::vector<Points>> other_points(const Points& points) {
   for (std::size_t i = 0; i < stretches; ++i) {
     const std::size_t from = 1 + inner * i / stretches;
     const std::size_t to = 1 + inner * (i + 1) / stretches;
-    groups.push_back({thinned(points, from, to, 0), thinned(points, from, to, 1),
-                      moved(points, from, to, misfits, kNoise)});
+    groups.push_back(
+        {thinned(points, from, to, 0), thinned(points, from, to, 1), moved(points, from, to, misfits, kNoise)});
   }
   const auto moved_end = [&](std::size_t end, double factor) {
-    return std::vector{moved(points, end, end + 1, misfits, factor),
-                       moved(points, end, end + 1, misfits, -factor)};
+    return std::vector{moved(points, end, end + 1, misfits, factor), moved(points, end, end + 1, misfits, -factor)};
   };
   groups.push_back(moved_end(0, kOnAxis));
-  groups.push_back(points.back().pressure > 0 ? moved_end(points.size() - 1, kAtEdge)
-                                              : other_endings(points));
+  groups.push_back(points.back().pressure > 0 ? moved_end(points.size() - 1, kAtEdge) : other_endings(points));
   return groups;
 }
 

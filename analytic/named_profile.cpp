@@ -24,9 +24,7 @@ struct TypedName {
 
 TypedName split(const std::string& name) {
   const auto colon = std::min(name.find(':'), name.size());
-  return {.whole = name,
-          .word = name.substr(0, colon),
-          .argument = name.substr(std::min(colon + 1, name.size()))};
+  return {.whole = name, .word = name.substr(0, colon), .argument = name.substr(std::min(colon + 1, name.size()))};
 }
 
 /// The number after the colon.
@@ -34,8 +32,7 @@ double number(const TypedName& name) {
   char* end = nullptr;
   const double value = std::strtod(name.argument.c_str(), &end);
   if (name.argument.empty() || *end != '\0')
-    throw std::invalid_argument(
-        fmt::format("profile \"{}\": \"{}\" is not a number", name.whole, name.argument));
+    throw std::invalid_argument(fmt::format("profile \"{}\": \"{}\" is not a number", name.whole, name.argument));
   return value;
 }
 
@@ -58,8 +55,7 @@ NamedProfile numbered(const TypedName& name) {
   return {.profile = profile(number(name))};
 }
 PressedContact press_power(const TypedName& name, const NormalLoad& load) {
-  return {numbered<power_profile>(name),
-          indent_power(load.load, number(name), load.shape[0], load.effective_modulus)};
+  return {numbered<power_profile>(name), indent_power(load.load, number(name), load.shape[0], load.effective_modulus)};
 }
 
 PressedContact press_rounded_punch(const TypedName&, const NormalLoad& load) {
@@ -96,10 +92,9 @@ constexpr std::array kProfiles{
     ProfileRow{"rounded_punch", "B", "flat out to B = b/a", numbered<rounded_punch_profile>,  //
                "flat radius, corner radius", "m", press_rounded_punch, true},
     ProfileRow{"constant", "", "", closed_form<constant_bound_profile>, "", "", nullptr},
-    ProfileRow{"capped", "C", "mu p under a sphere, at most C times its peak", numbered<capped_hertz_profile>,
-               "", "", nullptr},
-    ProfileRow{"pressure_power", "N", "k p^N under a sphere", numbered<power_of_hertz_profile>, "", "",
+    ProfileRow{"capped", "C", "mu p under a sphere, at most C times its peak", numbered<capped_hertz_profile>, "", "",
                nullptr},
+    ProfileRow{"pressure_power", "N", "k p^N under a sphere", numbered<power_of_hertz_profile>, "", "", nullptr},
     ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 
@@ -122,8 +117,7 @@ std::string joined(std::string_view separator, bool pressed, Text text) {
 const ProfileRow* find_row(const TypedName& name, bool pressed) {
   for (const ProfileRow& row : kProfiles) {
     const bool may_have_argument = written(row, pressed) != row.word;
-    if (row.word == name.word && (may_have_argument || name.whole == row.word) && (!pressed || row.press))
-      return &row;
+    if (row.word == name.word && (may_have_argument || name.whole == row.word) && (!pressed || row.press)) return &row;
   }
   return nullptr;
 }
@@ -144,15 +138,14 @@ PressedContact press(const std::string& profile_name, const NormalLoad& load) {
   const TypedName typed = split(profile_name);
   const ProfileRow* const row = find_row(typed, true);
   if (!row)
-    throw std::invalid_argument(
-        fmt::format("profile \"{}\" with a normal load; allowed: {}", profile_name,
-                    joined(", ", true, [](const ProfileRow& each) {
-                      const char* const note = " (without a ratio: it follows from load and shape)";
-                      return written(each, true) + (each.load_gives_argument ? note : "");
-                    })));
+    throw std::invalid_argument(fmt::format(
+        "profile \"{}\" with a normal load; allowed: {}", profile_name, joined(", ", true, [](const ProfileRow& each) {
+          const char* const note = " (without a ratio: it follows from load and shape)";
+          return written(each, true) + (each.load_gives_argument ? note : "");
+        })));
   if (std::ssize(load.shape) != 1 + std::ranges::count(row->shape, ','))
-    throw std::invalid_argument(fmt::format("profile \"{}\": shape {}; needed: {}", profile_name,
-                                            fmt::join(load.shape, ","), row->shape));
+    throw std::invalid_argument(
+        fmt::format("profile \"{}\": shape {}; needed: {}", profile_name, fmt::join(load.shape, ","), row->shape));
   return row->press(typed, load);
 }
 

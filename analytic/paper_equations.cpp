@@ -59,8 +59,7 @@ double eq1_with(double factor, double stick_ratio, double radius) {
   const double k = modulus(stick_ratio);
   const double phi = amplitude(stick_ratio, radius);
   return factor * sliding *
-         (pi / 2 + k * k * d(k) * incomplete_f(stick_ratio, phi) -
-          complete_k(k) * incomplete_e(stick_ratio, phi));
+         (pi / 2 + k * k * d(k) * incomplete_f(stick_ratio, phi) - complete_k(k) * incomplete_e(stick_ratio, phi));
 }
 
 constexpr double kNoSlipStiffness = 16.0 / 3;  // over G a^3
@@ -130,10 +129,9 @@ double dem_twist(double moment) {
 }
 
 std::span<const Approximation> approximations() {
-  static constexpr std::array kAll{Approximation{"equation_7", "Eq. (7)", paper::eq7_twist},
-                                   Approximation{"no_slip", "no slip", no_slip_twist},
-                                   Approximation{"small_moments", "small moments", small_moment_twist},
-                                   Approximation{"dem", "DEM", dem_twist}};
+  static constexpr std::array kAll{
+      Approximation{"equation_7", "Eq. (7)", paper::eq7_twist}, Approximation{"no_slip", "no slip", no_slip_twist},
+      Approximation{"small_moments", "small moments", small_moment_twist}, Approximation{"dem", "DEM", dem_twist}};
   return kAll;
 }
 

@@ -43,10 +43,9 @@ double no_slip_twist(double moment);
 /// (7) has the same two terms. moment in [0, 3 pi/16].
 double small_moment_twist(double moment);
 
-/// Discrete element codes: a linear spring, and free spinning at (2/3) mu W a, as if the pressure were
-/// uniform (Marshall 2009): 13 % more than the sphere can carry. All these codes have this cap. Their springs
-/// differ (Marshall's is half the tangential stiffness times a^2); this one has the stiffness without slip,
-/// (16/3) G a^3.
+/// Discrete element codes: a linear spring, and free spinning at (2/3) mu W a, as if the pressure were uniform
+/// (Marshall 2009): 13 % more than the sphere can carry. All these codes have this cap. Their springs differ
+/// (Marshall's is half the tangential stiffness times a^2); this one has the stiffness without slip, (16/3) G a^3.
 double dem_moment_limit();
 /// min((16/3) twist, 2/3). twist >= 0.
 double dem_moment(double twist);

@@ -31,10 +31,9 @@ struct Punches {
   double beyond_flat;    ///< low - b, b the radius that w begins at
 };
 
-/// Integrals of f(x) w(x)/sqrt(x^2 - r^2) dx. With x = m cosh(u), m the larger of r and b, the integrand is
-/// analytic: the substitution removes the square root at m; the one at the smaller of the two lies arccos of
-/// their ratio off the real axis. The panels of Gauss's rule are proportional to the distance from the
-/// singularity.
+/// Integrals of f(x) w(x)/sqrt(x^2 - r^2) dx. With x = m cosh(u), m the larger of r and b, the integrand is analytic:
+/// the substitution removes the square root at m; the one at the smaller of the two lies arccos of their ratio off the
+/// real axis. The panels of Gauss's rule are proportional to the distance from the singularity.
 class Quadrature {
  public:
   /// growth: the power of x that the integrand follows.
@@ -59,8 +58,8 @@ class Quadrature {
     const double end = growth_ < 0 ? std::min(length_, kNegligible / -growth_) : length_;
     while (from < end) {
       const double to = std::min(end, from + panel(from));
-      sum += growth_ > 0 ? gsl::gauss_legendre([&](double down) { return at(length_ - down, down, f); },
-                                               length_ - to, length_ - from)
+      sum += growth_ > 0 ? gsl::gauss_legendre([&](double down) { return at(length_ - down, down, f); }, length_ - to,
+                                               length_ - from)
                          : gsl::gauss_legendre([&](double up) { return at(up, length_ - up, f); }, from, to);
       from = to;
     }
@@ -76,8 +75,7 @@ class Quadrature {
     const double x = punches_.low + beyond;
     const double above = std::min(punches_.beyond_radius, punches_.beyond_flat);
     const double root = std::sqrt(beyond + above) * std::sqrt(x + anchor_);
-    return std::log1p((beyond + beyond * ((x + punches_.low) / (root + low_root_))) /
-                      (punches_.low + low_root_));
+    return std::log1p((beyond + beyond * ((x + punches_.low) / (root + low_root_))) / (punches_.low + low_root_));
   }
 
   double cut_from_above() const {
@@ -103,16 +101,15 @@ class Quadrature {
   /// integrand grows `down` is the one that holds the digits.
   template <class Function>
   double at(double up, double down, const Function& f) const {
-    const double beyond =
-        2 * std::sinh(up / 2) * (punches_.low * std::sinh(up / 2) + low_root_ * std::cosh(up / 2));
+    const double beyond = 2 * std::sinh(up / 2) * (punches_.low * std::sinh(up / 2) + low_root_ * std::cosh(up / 2));
     Punch punch{.radius = punches_.low + beyond, .beyond = beyond, .inward = punches_.length - beyond};
     if (growth_ > 0) {
       const double high = punches_.low + punches_.length;
       const double sum = high + high_root_;  // m exp(u, high)
       punch.radius = (sum * std::exp(-down) + anchor_ * (anchor_ / sum) * std::exp(down)) / 2;
-      punch.inward = down > 1 ? high - punch.radius
-                              : 2 * std::sinh(down / 2) *
-                                    (high_root_ * std::cosh(down / 2) - high * std::sinh(down / 2));
+      punch.inward = down > 1
+                         ? high - punch.radius
+                         : 2 * std::sinh(down / 2) * (high_root_ * std::cosh(down / 2) - high * std::sinh(down / 2));
       if (punch.radius > 2 * punches_.low) punch.beyond = punch.radius - punches_.low;
     }
     return f(punch) * ratio_of_roots(punch);
@@ -154,9 +151,8 @@ class Superposition : public Profile {
   }
 
   double twist_integral(StickRadius c) const override {
-    return sum(punches(c, c.ratio), 0, [&, front = front(c)](const Punch& punch) {
-      return flat_punch_profile().twist_integral(front(punch));
-    });
+    return sum(punches(c, c.ratio), 0,
+               [&, front = front(c)](const Punch& punch) { return flat_punch_profile().twist_integral(front(punch)); });
   }
   double twist_slope(StickRadius c) const override {
     const double at_front = distance_to_flat(c) > 0 ? weight(c.ratio, c.complement, distance_to_flat(c)) : 0;
@@ -220,8 +216,7 @@ class Superposition : public Profile {
     const double distance = distance_to_flat(c);
     if (distance >= 0)
       return {.low = c.ratio, .length = c.complement, .beyond_radius = inward, .beyond_flat = distance};
-    return {
-        .low = shape_.flat, .length = 1 - shape_.flat, .beyond_radius = inward - distance, .beyond_flat = 0};
+    return {.low = shape_.flat, .length = 1 - shape_.flat, .beyond_radius = inward - distance, .beyond_flat = 0};
   }
 
   Front front(StickRadius c) const { return {c.ratio, std::max(0.0, -distance_to_flat(c))}; }
@@ -238,8 +233,8 @@ class Superposition : public Profile {
   double moment_ratio(StickRadius c) const {
     return sum(punches(c, c.ratio), 3,
                [&, front = front(c)](const Punch& punch) {
-                 const double share = flat_punch_profile().full_stick() +
-                                      flat_punch_profile().moment_share(front(punch)).excess;
+                 const double share =
+                     flat_punch_profile().full_stick() + flat_punch_profile().moment_share(front(punch)).excess;
                  return punch.radius * punch.radius * punch.radius * share;
                }) /
            shape_.second_moment;
@@ -254,8 +249,7 @@ class Superposition : public Profile {
       return flat_punch_profile().moment_share(t).deficit / (t.ratio * t.ratio * t.ratio);
     });
     const double inner = distance_to_flat(c) > 0 ? second_moment_within(c) : 0;
-    return (inner + c.ratio * (c.ratio * (c.ratio * outer))) /
-           shape_.second_moment;  // the cube could underflow
+    return (inner + c.ratio * (c.ratio * (c.ratio * outer))) / shape_.second_moment;  // the cube could underflow
   }
 
   Shape shape_;
@@ -307,8 +301,7 @@ class RoundedPunch final : public Superposition {
   explicit RoundedPunch(double flat) : RoundedPunch(flat, 2 * rounded_moment(flat, 1 - flat, 1)) {}
 
  private:
-  RoundedPunch(double flat, double norm)
-      : RoundedPunch(flat, norm, rounded_moment(flat, 1 - flat, 2) / norm) {}
+  RoundedPunch(double flat, double norm) : RoundedPunch(flat, norm, rounded_moment(flat, 1 - flat, 2) / norm) {}
   RoundedPunch(double flat, double norm, double second_moment)
       : Superposition({.name = fmt::format("rounded_punch:{}", flat),
                        .reference_pressure = "mean pressure",

@@ -18,9 +18,8 @@ namespace slipstick::analytic {
 /// c^(n+2) for n < 1. c -> 1: M/M_lim goes like 1 - c. Throws std::domain_error outside the range of n.
 std::unique_ptr<const Profile> power_profile(double exponent);
 
-/// Flat punch out to b = flat_ratio in [0, 1), with rounded corners: gap (r - b)^2/(2 R) beyond (Ciavarella
-/// 1999). w ~ 2 sqrt(x^2 - b^2) - b arccos(b/x) for x > b, none below; p0 is the mean pressure W/(pi a^2). b
-/// = 0 is a sphere.
+/// Flat punch out to b = flat_ratio in [0, 1), with rounded corners: gap (r - b)^2/(2 R) beyond (Ciavarella 1999). w ~
+/// 2 sqrt(x^2 - b^2) - b arccos(b/x) for x > b, none below; p0 is the mean pressure W/(pi a^2). b = 0 is a sphere.
 ///
 /// The ends. c < b: 1 - M/M_lim goes like c^3, as under every finite pressure. c -> 1: M/M_lim goes like 1 -
 /// c however small 1 - b, since p ends at zero; but it is small only for 1 - c below 1 - b, and at c = b it

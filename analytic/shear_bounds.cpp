@@ -46,10 +46,7 @@ double stick_traction_of(const Disc& disc, StickRadius c, double r, double inwar
 class ConstantBound final : public Profile {
  public:
   ConstantBound()
-      : Profile({.name = "constant",
-                 .reference_pressure = "constant bound",
-                 .load = pi,
-                 .moment_limit = 2.0 / 3}) {}
+      : Profile({.name = "constant", .reference_pressure = "constant bound", .load = pi, .moment_limit = 2.0 / 3}) {}
 
   double pressure(double) const override { return 1; }
   double twist_integral(StickRadius c) const override { return std::asinh(disc(c).root / c.ratio); }
@@ -81,8 +78,7 @@ class BoundUnderHertz final : public Profile {
   }
 
   double twist_integral(StickRadius c) const override {
-    return shape_.sum(c, c.ratio, 0,
-                      [&](const Disc& disc, double) { return std::asinh(disc.root / c.ratio); });
+    return shape_.sum(c, c.ratio, 0, [&](const Disc& disc, double) { return std::asinh(disc.root / c.ratio); });
   }
   double twist_slope(StickRadius c) const override {
     return shape_.sum(c, c.ratio, -1, [](const Disc& disc, double cosine) { return disc.radius / cosine; });
@@ -95,9 +91,8 @@ class BoundUnderHertz final : public Profile {
   }
 
   MomentShare moment_share(StickRadius c) const override {
-    const double slip = shape_.sum(c, c.ratio, 0, [&](const Disc& disc, double) {
-      return moment_of_slip(disc, c.ratio);
-    }) / all_;
+    const double slip =
+        shape_.sum(c, c.ratio, 0, [&](const Disc& disc, double) { return moment_of_slip(disc, c.ratio); }) / all_;
     if (slip < 0.5) return {.excess = slip, .deficit = 1 - slip};
     const double stick =
         (shape_.sum(c, c.ratio, 0, [&](const Disc& disc, double) { return moment_within(disc, c.ratio); }) +
@@ -108,8 +103,7 @@ class BoundUnderHertz final : public Profile {
 
   double stick_traction(StickRadius c, double radius, double inward) const override {
     const double pole = std::sqrt(inward) * std::sqrt(c.ratio + radius);
-    return shape_.sum(c, pole, 0,
-                      [&](const Disc& disc, double) { return stick_traction_of(disc, c, radius, inward); });
+    return shape_.sum(c, pole, 0, [&](const Disc& disc, double) { return stick_traction_of(disc, c, radius, inward); });
   }
 
  private:
@@ -179,8 +173,7 @@ class BoundUnderHertz final : public Profile {
   /// The sum of rho^power over all discs.
   static double of_all(const Shape& shape, double power) {
     constexpr StickRadius kNearlyNone{.ratio = 1e-100, .complement = 1};
-    return shape.sum(kNearlyNone, 1, 0,
-                     [&](const Disc& disc, double) { return std::pow(disc.radius, power); });
+    return shape.sum(kNearlyNone, 1, 0, [&](const Disc& disc, double) { return std::pow(disc.radius, power); });
   }
 
   Shape shape_;
@@ -196,16 +189,15 @@ const Profile& constant_bound_profile() {
 
 std::unique_ptr<const Profile> capped_hertz_profile(double cap) {
   if (!(cap > 0 && cap <= 1)) out_of_range("cap", cap, "0 < cap <= 1");
-  return std::make_unique<const BoundUnderHertz>(fmt::format("capped:{}", cap),
-                                                 "peak of mu p without the cap", cap, 1);
+  return std::make_unique<const BoundUnderHertz>(fmt::format("capped:{}", cap), "peak of mu p without the cap", cap, 1);
 }
 
 std::unique_ptr<const Profile> power_of_hertz_profile(double exponent) {
   constexpr double kMax = 3;
   if (!(exponent > 0 && exponent <= kMax))
     out_of_range("exponent of the pressure", exponent, fmt::format("0 < n <= {}", kMax));
-  return std::make_unique<const BoundUnderHertz>(fmt::format("pressure_power:{}", exponent),
-                                                 "bound at the centre", 1, exponent);
+  return std::make_unique<const BoundUnderHertz>(fmt::format("pressure_power:{}", exponent), "bound at the centre", 1,
+                                                 exponent);
 }
 
 }  // namespace slipstick::analytic

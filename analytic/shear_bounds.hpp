@@ -8,10 +8,9 @@
 /// meets in the slip ring, instead of mu p. Torsion depends on the friction law only through this bound.
 /// `pressure()` is the bound over its p0, and W is the integral of the bound over the contact, divided by mu.
 ///
-/// A bound that falls outwards is a sum of constant bounds on discs of all radii rho: f(r) = integral of dv
-/// over the bounds v < f(r), each with the disc rho(v) on which f is larger. A constant bound on a disc has
-/// closed forms, by -H'(s) = v/(s sqrt(1 - (s/rho)^2)) from Abel's integral, and each is positive: sums of
-/// them cancel nowhere.
+/// A bound that falls outwards is a sum of constant bounds on discs of all radii rho: f(r) = integral of dv over the
+/// bounds v < f(r), each with the disc rho(v) on which f is larger. A constant bound on a disc has closed forms, by
+/// -H'(s) = v/(s sqrt(1 - (s/rho)^2)) from Abel's integral, and each is positive: sums of them cancel nowhere.
 namespace slipstick::analytic {
 
 /// A constant bound p0 (Tresca's law): H = arcosh(1/c), M/M_lim = (2/pi)(arccos c + c sqrt(1 - c^2)), stick

@@ -100,9 +100,8 @@ class Mesh {
     };
     const auto by_front = [&](double sign) {
       return [this, sign](double d) {
-        return Node{.radius = stick_.ratio + sign * d,
-                    .beyond_front = sign * d,
-                    .inside_edge = stick_.complement - sign * d};
+        return Node{
+            .radius = stick_.ratio + sign * d, .beyond_front = sign * d, .inside_edge = stick_.complement - sign * d};
       };
     };
     add_panels(shrinking(stick.ratio, finest), false, by_front(-1));
@@ -167,8 +166,7 @@ class Mesh {
 /// one at which the traction is bounded.
 class FrictionalPunch {
  public:
-  FrictionalPunch(const Mesh& mesh, double friction, double beta)
-      : mesh_(mesh), friction_(friction), beta_(beta) {
+  FrictionalPunch(const Mesh& mesh, double friction, double beta) : mesh_(mesh), friction_(friction), beta_(beta) {
     const auto size = static_cast<Eigen::Index>(mesh.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
     Eigen::VectorXd right_side(size);
@@ -208,8 +206,8 @@ class FrictionalPunch {
     const Node& node = mesh_[i];
     const double share = beta_ * beta_ / (pi * pi);
     for (std::size_t k = 0; k < mesh_.size(); ++k) {
-      const double same_side = k == i ? 2 / ((1 + node.radius) * node.inside_edge)
-                                      : (logarithm(k) - logarithm(i)) / mesh_.distance(i, k);
+      const double same_side =
+          k == i ? 2 / ((1 + node.radius) * node.inside_edge) : (logarithm(k) - logarithm(i)) / mesh_.distance(i, k);
       const double other_side = (logarithm(k) + logarithm(i)) / (mesh_[k].radius + node.radius);
       entry(row, k) = share * mesh_[k].weight * (same_side - other_side);
     }
@@ -257,8 +255,7 @@ class FrictionalPunch {
       const double at = std::lerp(from, 1, rule.fraction(j));
       const double length = mesh_[i].panel_length;
       const double weight = (1 - from) * length * rule.weight(j) * abel_kernel(s, s + (at - from) * length);
-      for (std::size_t k = 0; k < rule.points(); ++k)
-        entry(row, start + k) += weight * rule.polynomial(k, at);
+      for (std::size_t k = 0; k < rule.points(); ++k) entry(row, start + k) += weight * rule.polynomial(k, at);
     }
   }
 

@@ -128,14 +128,12 @@ class Tabulated final : public Profile {
     if (c.ratio < kSmallestRatio)
       return twist_integral({.ratio = kSmallestRatio, .complement = 1}) +
              pressure(0) * (std::log(kSmallestRatio) - std::log(c.ratio));
-    return beyond(c, c.ratio,
-                  [](double, double rho, const Piece& piece, double s) { return piece.pressure(s) / rho; });
+    return beyond(c, c.ratio, [](double, double rho, const Piece& piece, double s) { return piece.pressure(s) / rho; });
   }
 
   /// d/dc of the integral, in u of rho = c cosh(u).
   double twist_slope(StickRadius c) const override {
-    const StickRadius at =
-        c.ratio < kSmallestRatio ? StickRadius{.ratio = kSmallestRatio, .complement = 1} : c;
+    const StickRadius at = c.ratio < kSmallestRatio ? StickRadius{.ratio = kSmallestRatio, .complement = 1} : c;
     const double edge_pressure = pieces_.back().pressure(0);
     const double inner =
         beyond(at, at.ratio, [](double, double, const Piece& piece, double s) { return -piece.slope(s); });
@@ -145,10 +143,9 @@ class Tabulated final : public Profile {
   double punch_density(StickRadius s) const override {
     const double edge_pressure = pieces_.back().pressure(0);
     const double at_edge = edge_pressure > 0 ? edge_pressure / std::sqrt(s.complement * (1 + s.ratio)) : 0;
-    return 2 / pi * s.ratio *
-           (at_edge + beyond(s, s.ratio, [](double, double rho, const Piece& piece, double inward) {
-              return -piece.slope(inward) / rho;
-            }));
+    return 2 / pi * s.ratio * (at_edge + beyond(s, s.ratio, [](double, double rho, const Piece& piece, double inward) {
+                                 return -piece.slope(inward) / rho;
+                               }));
   }
   /// All knots, or every so many of them: the jumps of the curvature at the others then cost up to 1e-7 of
   /// the largest stress.
@@ -257,8 +254,7 @@ class Tabulated final : public Profile {
   double moment_;
 };
 
-[[noreturn]] void refuse(const std::string& where, std::string_view what, double value,
-                         std::string_view allowed) {
+[[noreturn]] void refuse(const std::string& where, std::string_view what, double value, std::string_view allowed) {
   throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: {}", where, what, value, allowed));
 }
 
@@ -267,10 +263,8 @@ void check_points(const std::string& name, const Points& points, const std::vect
     const auto [radius, pressure] = points[i];
     if (i == 0 && radius != 0) refuse(places[i], "radius", radius, "0 at the first point");
     if (i > 0 && !(radius > points[i - 1].radius && std::isfinite(radius)))
-      refuse(places[i], "radius", radius,
-             fmt::format("finite and more than the one before, {}", points[i - 1].radius));
-    if (!(pressure >= 0 && std::isfinite(pressure)))
-      refuse(places[i], "pressure", pressure, "finite and not negative");
+      refuse(places[i], "radius", radius, fmt::format("finite and more than the one before, {}", points[i - 1].radius));
+    if (!(pressure >= 0 && std::isfinite(pressure))) refuse(places[i], "pressure", pressure, "finite and not negative");
     if (pressure == 0 && i + 1 < points.size())
       refuse(places[i], "pressure", pressure, "> 0 except at the last point, where the contact ends");
   }
@@ -283,8 +277,7 @@ void check_points(const std::string& name, const Points& points, const std::vect
 }
 
 /// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
-void check_that_a_circle_sticks(const Profile& profile, const Points& points,
-                                const std::vector<std::string>& places) {
+void check_that_a_circle_sticks(const Profile& profile, const Points& points, const std::vector<std::string>& places) {
   constexpr std::size_t kMax = 200;  // more checks would say little and cost more than the profile
   const std::size_t step = 1 + points.size() / kMax;
   for (std::size_t i = 1; i + 1 < points.size(); i += step) {
@@ -315,16 +308,14 @@ double parse_number(std::string_view text, std::string_view what, const std::str
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw std::invalid_argument(
-        fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMaxShown)));
+    throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMaxShown)));
   return value;
 }
 
 PressurePoint parse_point(std::string_view line, const std::string& where) {
   const auto comma = line.find(',');
   if (comma == std::string_view::npos || line.find(',', comma + 1) != std::string_view::npos)
-    throw std::invalid_argument(
-        fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMaxShown)));
+    throw std::invalid_argument(fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMaxShown)));
   return {.radius = parse_number(trimmed(line.substr(0, comma)), "radius", where),
           .pressure = parse_number(trimmed(line.substr(comma + 1)), "pressure", where)};
 }
@@ -345,8 +336,8 @@ std::ifstream open_table(const std::string& file) {
     const std::string reason = size > kLargestPressureTable && !error ? "it is larger"
                                : error                                ? error.message()
                                                                       : "permission denied";
-    throw std::invalid_argument(fmt::format("{}: cannot be read ({}); allowed: a CSV file of at most {} MiB",
-                                            file, reason, kLargestPressureTable >> 20));
+    throw std::invalid_argument(fmt::format("{}: cannot be read ({}); allowed: a CSV file of at most {} MiB", file,
+                                            reason, kLargestPressureTable >> 20));
   }
   return stream;
 }

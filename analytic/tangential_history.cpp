@@ -47,8 +47,7 @@ std::optional<TangentialHistory::Slip> TangentialHistory::ring_that_ends_before(
     const double before = missing(outer);
     const double after = missing(inner);
     if (outer < start && before * after < 0)
-      return Slip{.front = std::lerp(outer, inner, before / (before - after)),
-                  .direction = std::copysign(1, before)};
+      return Slip{.front = std::lerp(outer, inner, before / (before - after)), .direction = std::copysign(1, before)};
     outer = inner;
   }
   return std::nullopt;
@@ -92,9 +91,7 @@ TangentialHistory::Slip TangentialHistory::slip_inwards(double missing_force) {
 double TangentialHistory::energy_lost(const Slip& slip, double normal_load) const {
   const double start = this->normal_load();
   // The force that the front has gained says how far the step has come, and so what the load is.
-  const auto gained = [&](double front) {
-    return (start - front) - slip.direction * force_between(front, start);
-  };
+  const auto gained = [&](double front) { return (start - front) - slip.direction * force_between(front, start); };
   const double whole = gained(slip.front);
   const double power = indenter_.radius_power();
   if (!(whole > 0) || power == 0) return 0;
@@ -133,8 +130,7 @@ double TangentialHistory::traction(double radius) const {
   if (!(radius >= 0)) out_of_range("r/a_0", radius, "0 or more");
   double sum = 0;
   for (std::size_t i = 0; i < layers_.size(); ++i)
-    sum += layers_[i].share *
-           (indenter_.pressure(layers_[i].load, radius) - indenter_.pressure(inner_load(i), radius));
+    sum += layers_[i].share * (indenter_.pressure(layers_[i].load, radius) - indenter_.pressure(inner_load(i), radius));
   if (!std::isfinite(sum)) out_of_range("r/a_0", radius, "where the pressure is finite");
   return sum;
 }

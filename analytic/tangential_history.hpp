@@ -34,8 +34,7 @@ struct HistoryState {
 class TangentialHistory {
  public:
   /// Out of contact.
-  explicit TangentialHistory(SelfSimilarIndenter indenter = SelfSimilarIndenter())
-      : indenter_(std::move(indenter)) {}
+  explicit TangentialHistory(SelfSimilarIndenter indenter = SelfSimilarIndenter()) : indenter_(std::move(indenter)) {}
 
   /// On to W/W_0 and F/(mu W_0) along a straight line in the plane of both. Throws std::domain_error, with
   /// the state unchanged, unless 0 < W and |F| < mu W (beyond is gross slip).
@@ -52,8 +51,7 @@ class TangentialHistory {
     double load;
     double share;
   };
-  /// How a step slipped: the shares became `direction` for the punches from the outermost to the one of load
-  /// `front`.
+  /// How a step slipped: the shares became `direction` for the punches from the outermost to the one of load `front`.
   struct Slip {
     double front;
     double direction;

@@ -18,9 +18,7 @@ constexpr double kMin = std::numeric_limits<double>::min();
 constexpr StickRadius kFull{.ratio = 1, .complement = 0};
 
 /// G a^2 phi/(mu W) of H.
-double twist_at(double twist_integral, const Profile& profile) {
-  return twist_integral / (2 * profile.load());
-}
+double twist_at(double twist_integral, const Profile& profile) { return twist_integral / (2 * profile.load()); }
 
 TorsionState state_at(StickRadius c, MomentShare share, const Profile& profile) {
   const double ratio = profile.full_stick() + share.excess;
@@ -33,9 +31,7 @@ TorsionState state_at(StickRadius c, MomentShare share, const Profile& profile) 
           .tangent_stiffness = profile.bonded_stiffness(c) * c.ratio * c.ratio * c.ratio};
 }
 
-TorsionState state_at(StickRadius c, const Profile& profile) {
-  return state_at(c, profile.moment_share(c), profile);
-}
+TorsionState state_at(StickRadius c, const Profile& profile) { return state_at(c, profile.moment_share(c), profile); }
 
 /// Full stick under a singular edge: the bonded punch.
 TorsionState fully_stuck(double moment_ratio, double moment_deficit, const Profile& profile) {
@@ -62,7 +58,7 @@ template <class Function>
 double solve(double value, double start, double high, Function f) {
   constexpr double kConverged = 1e-9;  // in ln x; the error left is of the order of its square
   constexpr int kMaxSteps = 200;       // four are usual
-  constexpr int kStraight = 20;  // later every other step halves: a bumpy table may send Newton to and fro
+  constexpr int kStraight = 20;        // later every other step halves: a bumpy table may send Newton to and fro
   if (value == 0) return 0;
   double low = 0;
   double x = start > 0 && start < high ? start : high / 2;
@@ -132,9 +128,8 @@ bool is_too_narrow(double load, const Profile& profile) {
 /// Where there is slip, or no load.
 TorsionState state_under(MomentShare share, const Profile& profile) {
   constexpr double kNearLimit = 0.3;  // fraction of slip's effect; there 1 - c is no small difference
-  const StickRadius c = share.deficit > kNearLimit * profile.slip_share()
-                            ? stick_from_excess(share.excess, profile)
-                            : stick_from_deficit(share.deficit, profile);
+  const StickRadius c = share.deficit > kNearLimit * profile.slip_share() ? stick_from_excess(share.excess, profile)
+                                                                          : stick_from_deficit(share.deficit, profile);
   return state_at(c, share, profile);
 }
 
@@ -142,22 +137,19 @@ TorsionState state_under(MomentShare share, const Profile& profile) {
 
 TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
   if (moment_ratio >= 1)
-    throw std::domain_error(
-        fmt::format("M/M_lim = {} is gross slip; allowed: 0 <= M/M_lim < 1", moment_ratio));
+    throw std::domain_error(fmt::format("M/M_lim = {} is gross slip; allowed: 0 <= M/M_lim < 1", moment_ratio));
   if (!(moment_ratio == 0 || moment_ratio >= kMin))
     out_of_range("M/M_lim", moment_ratio, "0, or 2.3e-308 <= M/M_lim < 1");
   // Beyond full stick 1 - M/M_lim is exact, and the share of slip has more digits than full stick's rest.
   const double excess = profile.full_stick() > 0 ? profile.slip_share() - (1 - moment_ratio) : moment_ratio;
-  if (excess < 0 || is_too_narrow(excess, profile))
-    return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
+  if (excess < 0 || is_too_narrow(excess, profile)) return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
   TorsionState state = state_under({.excess = excess, .deficit = 1 - moment_ratio}, profile);
   state.moment_ratio = moment_ratio;
   return state;
 }
 
 TorsionState from_moment_deficit(double moment_deficit, const Profile& profile) {
-  if (moment_deficit == 0)
-    throw std::domain_error("1 - M/M_lim = 0 is gross slip; allowed: 0 < 1 - M/M_lim <= 1");
+  if (moment_deficit == 0) throw std::domain_error("1 - M/M_lim = 0 is gross slip; allowed: 0 < 1 - M/M_lim <= 1");
   if (!(moment_deficit >= kMin && moment_deficit <= 1))
     out_of_range("1 - M/M_lim", moment_deficit, "2.3e-308 <= 1 - M/M_lim <= 1");
   const double excess = profile.slip_share() - moment_deficit;
@@ -166,8 +158,7 @@ TorsionState from_moment_deficit(double moment_deficit, const Profile& profile) 
 }
 
 TorsionState from_stick_ratio(double stick_ratio, const Profile& profile) {
-  if (!(stick_ratio >= kMin && stick_ratio <= 1))
-    out_of_range("a_s/a", stick_ratio, "2.3e-308 <= a_s/a <= 1");
+  if (!(stick_ratio >= kMin && stick_ratio <= 1)) out_of_range("a_s/a", stick_ratio, "2.3e-308 <= a_s/a <= 1");
   return state_at({.ratio = stick_ratio, .complement = 1 - stick_ratio}, profile);
 }
 
@@ -190,11 +181,10 @@ TorsionState from_twist(double twist, const Profile& profile) {
     return state;
   }
   const double value = 2 * profile.load() * (twist - stuck);
-  const StickRadius c =
-      stick_beyond(solve(value, value / profile.twist_slope(kFull), -std::log(kMin), [&](double x) {
-        const double h = twist_beyond_stick(x, profile);
-        return Sample{.value = h, .power = x * profile.twist_slope(stick_beyond(x)) / h};
-      }));
+  const StickRadius c = stick_beyond(solve(value, value / profile.twist_slope(kFull), -std::log(kMin), [&](double x) {
+    const double h = twist_beyond_stick(x, profile);
+    return Sample{.value = h, .power = x * profile.twist_slope(stick_beyond(x)) / h};
+  }));
   TorsionState state = state_at(c, profile);
   state.twist = twist;
   return state;
@@ -213,8 +203,7 @@ double traction(const TorsionState& state, double radius, const Profile& profile
   const double inward = c.ratio < 0.5 ? c.ratio - r : (1 - r) - c.complement;
   if (inward > 0) return profile.stick_traction(c, r, inward);
   const double pressure = profile.pressure(r);
-  if (!(pressure <= std::numeric_limits<double>::max()))
-    out_of_range("r/a", r, "where the pressure is finite");
+  if (!(pressure <= std::numeric_limits<double>::max())) out_of_range("r/a", r, "where the pressure is finite");
   return pressure;
 }
 

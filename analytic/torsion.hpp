@@ -4,10 +4,9 @@
 
 namespace slipstick::analytic {
 
-/// One state of an axisymmetric contact in torsion with a slip ring a_s < r < a (sphere: Lubkin 1951).
-/// Dimensionless: lengths over the contact radius a, moments over mu W a, twist as G a^2 phi/(mu W), with the
-/// combined modulus 1/G = 1/G_1 + 1/G_2. Both a number and its complement are carried, so that neither end of
-/// the range loses digits.
+/// One state of an axisymmetric contact in torsion with a slip ring a_s < r < a (sphere: Lubkin 1951). Dimensionless:
+/// lengths over the contact radius a, moments over mu W a, twist as G a^2 phi/(mu W), with the combined modulus 1/G =
+/// 1/G_1 + 1/G_2. Both a number and its complement are carried, so that neither end of the range loses digits.
 struct TorsionState {
   double moment_ratio;       ///< M/M_lim
   double moment_deficit;     ///< 1 - M/M_lim
@@ -31,9 +30,8 @@ TorsionState from_stick_ratio(double stick_ratio, const Profile& profile = hertz
 TorsionState from_stick_complement(double stick_complement, const Profile& profile = hertz_profile());
 TorsionState from_twist(double twist, const Profile& profile = hertz_profile());
 
-/// Circumferential shear traction q/(mu p0) at radius r/a in [0, 1], Eq. (1) with its factor corrected; free
-/// of cancellation. Throws std::domain_error outside [0, 1], and where it is infinite (at the edge of a flat
-/// punch).
+/// Circumferential shear traction q/(mu p0) at radius r/a in [0, 1], Eq. (1) with its factor corrected; free of
+/// cancellation. Throws std::domain_error outside [0, 1], and where it is infinite (at the edge of a flat punch).
 double traction(const TorsionState& state, double radius, const Profile& profile = hertz_profile());
 
 }  // namespace slipstick::analytic

@@ -56,8 +56,7 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
       fmt::format("Measured by slipstick bench on {}, {:%Y-%m-%d}.",
                   plane.at("provenance").at("cpu").get<std::string>(), fmt::gmtime(std::time(nullptr)));
   const Json request{{"what", "accuracy"}, {"plane", plane}, {"origin", origin}};
-  convergence::write_option_file("--accuracy-data", file,
-                                 convergence::run_package_module("speed.plane", request).text);
+  convergence::write_option_file("--accuracy-data", file, convergence::run_package_module("speed.plane", request).text);
 }
 
 /// Runs a program of Google Benchmark; `what` and further keys are the module's.
@@ -144,8 +143,8 @@ int time_scene(const BenchRequest& request, std::ostream& text, Json& result) {
     const convergence::Interrupts interrupts;
     costs = convergence::scene_costs(
         {.scene = request.scene, .overrides = request.overrides},
-        convergence::page_size(request.quick ? convergence::Effort::quick : convergence::Effort::usual),
-        beside, folder / "data", pool);
+        convergence::page_size(request.quick ? convergence::Effort::quick : convergence::Effort::usual), beside,
+        folder / "data", pool);
   }
   result = convergence::to_json(costs);
   text << convergence::costs_text(costs);

@@ -34,8 +34,7 @@ RunCommand add_run_command(CLI::App& app);
 /// Adds `solve`. Exit code 1 where the solve did not reach its tolerance.
 /// ranks: the processes that share the solve.
 RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks);
-/// Adds `study`: solves a scene on many meshes, to many tolerances or with varied keys, and judges the
-/// results.
+/// Adds `study`: solves a scene on many meshes, to many tolerances or with varied keys, and judges the results.
 RunCommand add_study_command(CLI::App& app);
 
 }  // namespace slipstick::convergence

@@ -25,8 +25,7 @@ inline constexpr std::array kQuantities{&Quantities::twist, &Quantities::displac
 
 /// How well a mesh resolves a contact's slip and stick.
 struct Resolution {
-  /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
-  /// sticks.
+  /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell sticks.
   double stick_width = 0.0;
   double slip_width = 0.0;  ///< mean number of cells across the slip area: twice its area over its outline
   double step = 0.0;        ///< relative error of the step's own change that the mesh causes
@@ -65,8 +64,7 @@ struct ContactNumbers {
   double normal_load = 0.0;    ///< W, N: the sum of the pressure
   double peak_pressure = 0.0;  ///< Pa
   double approach = 0.0;       ///< m
-  /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells'
-  /// area.
+  /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells' area.
   double contact_radius = 0.0;
   double contact_radius_counted = 0.0;  ///< m, of a circle with the contact cells' area
   Index contact_cells = 0;
@@ -89,8 +87,8 @@ struct LoadNumbers {
   double moment = 0.0;                   ///< N m
   std::array<double, 2> force{};         ///< N
   double moment_limit = 0.0;             ///< N m, of this pressure and mesh, without force
-  double friction_force = 0.0;  ///< N, that slides the contact along a line: mu W under Coulomb's law
-  LimitLoad limit;              ///< of the loads imposed; lengths in m, its motion's scale free
+  double friction_force = 0.0;           ///< N, that slides the contact along a line: mu W under Coulomb's law
+  LimitLoad limit;                       ///< of the loads imposed; lengths in m, its motion's scale free
 };
 
 struct EnergyNumbers {
@@ -153,8 +151,7 @@ struct Solution : SolutionFields,
   Detail detail = Detail::all;
   FrictionLaw friction;        ///< in Pa
   double shear_modulus = 0.0;  ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
-  bool coupled =
-      false;  ///< the pressure displaces the surfaces tangentially: K13, K23 enter and are not zero
+  bool coupled = false;        ///< the pressure displaces the surfaces tangentially: K13, K23 enter and are not zero
   std::vector<Omission> left_out;
 };
 

@@ -26,15 +26,13 @@ void require_can_solve(const Scene& scene) {
 
 /// The cache of the model's operators, with the room that the solve leaves: the one given, or one of its own
 /// where operators are needed more than once.
-std::shared_ptr<SolveCache> prepare_cache(std::shared_ptr<SolveCache> cache, const Scene& scene,
-                                          const Model& model) {
+std::shared_ptr<SolveCache> prepare_cache(std::shared_ptr<SolveCache> cache, const Scene& scene, const Model& model) {
   const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
   if (!cache && repeats) cache = std::make_shared<SolveCache>();
   if (cache) {
     const double room = scene.solver.memory_limit.value_or(std::numeric_limits<double>::infinity()) -
                         predicted_memory(scene, model).total();
-    cache->begin_solve(scene.solver.rounding_seed == 0 ? room
-                                                       : 0.0);  // rounding changes with every application
+    cache->begin_solve(scene.solver.rounding_seed == 0 ? room : 0.0);  // rounding changes with every application
   }
   return cache;
 }

@@ -130,9 +130,7 @@ class Rational {
   fmpq* get() { return q_; }
   const fmpq* get() const { return q_; }
 
-  friend Rational operator-(const Rational& a, const Rational& b) {
-    return made_by<Rational>(fmpq_sub, a.q_, b.q_);
-  }
+  friend Rational operator-(const Rational& a, const Rational& b) { return made_by<Rational>(fmpq_sub, a.q_, b.q_); }
   friend auto operator<=>(const Rational& a, const Rational& b) { return fmpq_cmp(a.q_, b.q_) <=> 0; }
   friend bool operator==(const Rational& a, const Rational& b) { return fmpq_equal(a.q_, b.q_) != 0; }
   Ball ball() const { return made_by<Ball>(arb_set_fmpq, q_, Precision::bits()); }
@@ -187,9 +185,7 @@ class ComplexBall {
   Ball real() const { return made_by<Ball>(acb_get_real, z_); }
   Ball imaginary() const { return made_by<Ball>(acb_get_imag, z_); }
   /// Whether it may lie on (-infinity, 0], where sqrt and log are cut.
-  bool touches_cut() const {
-    return arb_contains_zero(acb_imagref(z_)) != 0 && arb_is_positive(acb_realref(z_)) == 0;
-  }
+  bool touches_cut() const { return arb_contains_zero(acb_imagref(z_)) != 0 && arb_is_positive(acb_realref(z_)) == 0; }
 
  private:
   template <class Function, class... Balls>
@@ -225,14 +221,13 @@ Ball integral(const Function& f, const Ball& a, const Ball& b) {
   mag_t tolerance;  // 0: what counts is the relative error
   mag_init(tolerance);
   ComplexBall result;
-  acb_calc_integrate(result.get(), call, const_cast<Function*>(&f), ComplexBall(a).get(),
-                     ComplexBall(b).get(), Precision::bits(), tolerance, nullptr, Precision::bits());
+  acb_calc_integrate(result.get(), call, const_cast<Function*>(&f), ComplexBall(a).get(), ComplexBall(b).get(),
+                     Precision::bits(), tolerance, nullptr, Precision::bits());
   mag_clear(tolerance);
   return result.real();
 }
 
-// ---------------------------------------------------------------- between decimal strings and balls
-// (ball_text.cpp)
+// ---------------------------------------------------------------- between decimal strings and balls (ball_text.cpp)
 
 /// The number that the text writes in C's decimal or hexadecimal notation, exactly. Throws std::domain_error,
 /// which calls it `name`, for other text, and for numbers but 0 outside 1e-1000..1e1000.

@@ -20,9 +20,8 @@ Ball fall_of_twist_integral(const Law& law, const Stick& stick, const Ball& twis
   return pi() * s * slope / (2 * mean * mean);
 }
 
-/// |e^(rate u) K(c e^(sign u))| on a ball, which has to lie in |Im u| < pi/2. There s = c e^(sign u) has the
-/// argument sign Im u; in K = R_F(0, s^2, 1), |t + s^2| >= (t + |s|^2) cos(arg s): |K(s)| <=
-/// K(|s|)/sqrt(cos(arg s)).
+/// |e^(rate u) K(c e^(sign u))| on a ball, which has to lie in |Im u| < pi/2. There s = c e^(sign u) has the argument
+/// sign Im u; in K = R_F(0, s^2, 1), |t + s^2| >= (t + |s|^2) cos(arg s): |K(s)| <= K(|s|)/sqrt(cos(arg s)).
 ComplexBall bound_of_term(const Ball& rate, const Ball& c, int sign, const ComplexBall& u) {
   const Precision enough(32);
   const Ball angle = upper_bound(abs(u.imaginary()));
@@ -33,9 +32,8 @@ ComplexBall bound_of_term(const Ball& rate, const Ball& c, int sign, const Compl
   return {bound, bound};
 }
 
-/// integral_0^end e^(rate u) K(c e^(sign u)) du. Over the logarithm the integrands are smooth all the way to
-/// c = 0. For its analyticity test the integrator needs only a bound, and Arb's bound of a mean is far too
-/// large.
+/// integral_0^end e^(rate u) K(c e^(sign u)) du. Over the logarithm the integrands are smooth all the way to c = 0. For
+/// its analyticity test the integrator needs only a bound, and Arb's bound of a mean is far too large.
 Ball integral_of_k(const Ball& rate, const Ball& c, int sign, const Ball& end) {
   const auto integrand = [&](const ComplexBall& u, bool analytic) {
     if (analytic) return bound_of_term(rate, c, sign, u);
@@ -157,9 +155,8 @@ std::optional<Ball> rough_root(const Equation& equation) {
   return {};
 }
 
-/// Let f(y) = 0 be the equation, and Y an interval about y: if y - f(y)/f'(Y) lies inside Y, it holds a root
-/// of f, the only one in Y (Moore 1966), and the only one at all, since load and twist grow with y. y is good
-/// to `good` bits.
+/// Let f(y) = 0 be the equation, and Y an interval about y: if y - f(y)/f'(Y) lies inside Y, it holds a root of f, the
+/// only one in Y (Moore 1966), and the only one at all, since load and twist grow with y. y is good to `good` bits.
 std::optional<Ball> proven_root(const Equation& equation, const Ball& y, slong good) {
   const Residual at = residual(equation, y);
   const Ball around = y + (4 * at.value / at.slope).symmetric();

@@ -53,9 +53,7 @@ class Reader {
 };
 
 /// base^exponent
-Rational power(slong base, slong exponent) {
-  return made_by<Rational>(fmpq_pow_si, Rational(base).get(), exponent);
-}
+Rational power(slong base, slong exponent) { return made_by<Rational>(fmpq_pow_si, Rational(base).get(), exponent); }
 
 Ball ten_to(slong exponent) {
   Ball result = 10;
@@ -149,8 +147,7 @@ std::optional<certified::Number> print_proven(const Ball& ball, int digits) {
     if (!radius) return {};
     const std::string radius_text = std::to_string(*radius);
     const slong radius_exponent = exponent - digits - 2 + static_cast<slong>(radius_text.size());
-    return certified::Number{written(text, exponent),
-                             *radius == 0 ? "0" : written(radius_text, radius_exponent)};
+    return certified::Number{written(text, exponent), *radius == 0 ? "0" : written(radius_text, radius_exponent)};
   }
   return {};
 }

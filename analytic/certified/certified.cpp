@@ -58,10 +58,9 @@ Rational read_value(Quantity given, const std::string& text) {
                           (given == Quantity::moment_deficit && value == Rational(0));
   if (gross_slip)
     throw std::domain_error(fmt::format("{} = {} is gross slip; allowed: {}", range.name, text, range.words));
-  const bool allowed = value == Rational(0) ? range.zero
-                       : value == Rational(1)
-                           ? range.one
-                           : value > Rational(0) && (value < Rational(1) || range.beyond_one);
+  const bool allowed = value == Rational(0)   ? range.zero
+                       : value == Rational(1) ? range.one
+                                              : value > Rational(0) && (value < Rational(1) || range.beyond_one);
   if (!allowed) out_of_range(range.name, text, range.words);
   return value;
 }
@@ -75,8 +74,7 @@ Rational read_radius(Kind kind, const std::string& text) {
   return radius;
 }
 
-Question read(const Profile& profile, Quantity given, const std::string& value,
-              const std::vector<std::string>& radii) {
+Question read(const Profile& profile, Quantity given, const std::string& value, const std::vector<std::string>& radii) {
   Question question{{profile.kind, read_exponent(profile), given, read_value(given, value)}, {}};
   for (const auto& radius : radii) question.radii.push_back(read_radius(profile.kind, radius));
   return question;
@@ -106,8 +104,7 @@ std::optional<Stick> stick_of(const Question& question) {
     const Rational deficit = deficit_given ? question.value : one - question.value;
     // Estimate of the distance to the onset of slip or to gross slip, whichever is smaller, over the distance
     // between the two.
-    const bool deficit_less =
-        deficit < (question.kind == Kind::flat_punch ? Rational(3, 40) : Rational(1, 2));
+    const bool deficit_less = deficit < (question.kind == Kind::flat_punch ? Rational(3, 40) : Rational(1, 2));
     equation.quantity = deficit_less ? Quantity::moment_deficit : Quantity::moment_ratio;
     equation.value = deficit_less ? deficit : one - deficit;
   }
@@ -175,8 +172,8 @@ std::optional<State> print(const Question& question, const Balls& balls, int dig
 
 }  // namespace
 
-State state(const Profile& profile, Quantity given, const std::string& value,
-            const std::vector<std::string>& radii, int digits) {
+State state(const Profile& profile, Quantity given, const std::string& value, const std::vector<std::string>& radii,
+            int digits) {
   if (digits < kMinDigits || digits > kMaxDigits)
     out_of_range("digits", std::to_string(digits), fmt::format("{}..{}", kMinDigits, kMaxDigits));
   const Question question = read(profile, given, value, radii);

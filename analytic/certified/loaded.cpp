@@ -14,12 +14,12 @@ Profile profile_named(const std::string& name) {
   if (name == "flat_punch") return {.kind = Kind::flat_punch};
   if (name == "constant") return {.kind = Kind::constant};
   if (name.starts_with(power)) return {.kind = Kind::power, .exponent = name.substr(power.size())};
-  throw std::domain_error(fmt::format(
-      "profile {} has no certified digits; allowed: hertz, cone, flat_punch, power:N, constant", name));
+  throw std::domain_error(
+      fmt::format("profile {} has no certified digits; allowed: hertz, cone, flat_punch, power:N, constant", name));
 }
 
-State state(const Profile& profile, Quantity given, const std::string& value,
-            const std::vector<std::string>& radii, int digits) {
+State state(const Profile& profile, Quantity given, const std::string& value, const std::vector<std::string>& radii,
+            int digits) {
   decltype(state)* proven = nullptr;
   try {
     proven = loaded_library<decltype(state)>("slipstick_certified");

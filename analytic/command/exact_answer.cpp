@@ -58,8 +58,7 @@ std::vector<StressRow> rows(const AtPoint& point) {
   list.push_back({"von_mises", "von Mises stress", "sigma_v/p0", von_mises});
   list.push_back({"tresca", "Tresca stress", "(s1 - s3)/p0", tresca});
   list.push_back({"tension", "principal stress", "s1/p0", tension});
-  if (point.yield_pressure)
-    list.push_back({"yield_pressure", "p0 at first yield", "Pa", *point.yield_pressure});
+  if (point.yield_pressure) list.push_back({"yield_pressure", "p0 at first yield", "Pa", *point.yield_pressure});
   if (point.yield_load) list.push_back({"yield_load", "load at first yield", "N", *point.yield_load});
   return list;
 }
@@ -99,8 +98,7 @@ AtRadii at_radii(const std::vector<double>& radii, Function f) {
 
 /// The error that a table's interpolation leaves in each number of the state. Throws where another reading of
 /// the points has no such state. Energies and the state after unloading have none.
-TableErrors table_errors(const TabulatedProfile& table, const StateOf& state_of,
-                         const std::vector<double>& radii) {
+TableErrors table_errors(const TabulatedProfile& table, const StateOf& state_of, const std::vector<double>& radii) {
   const auto numbers = [&](const Profile& profile, double mean_pressure) {
     const TorsionState state = state_of(profile);
     std::vector<double> list;
@@ -120,8 +118,7 @@ TableErrors table_errors(const TabulatedProfile& table, const StateOf& state_of,
 }
 
 /// The results in SI units, as many as the units given allow.
-std::vector<UnitsRow> units_rows(const ExactContact& contact, double stick_ratio, double moment,
-                                 double twist) {
+std::vector<UnitsRow> units_rows(const ExactContact& contact, double stick_ratio, double moment, double twist) {
   if (!contact.units) return {};
   const Units& units = *contact.units;
   const double a = units.indentation.contact_radius;
@@ -131,12 +128,11 @@ std::vector<UnitsRow> units_rows(const ExactContact& contact, double stick_ratio
                              {"stick_radius", "stick radius", "m", stick_ratio * a}};
   if (!units.friction) return rows;
   const double moment_unit = *units.friction * units.load * a;
-  rows.push_back(
-      {"moment_limit", "limit moment", "N m", contact.profile.profile->moment_limit() * moment_unit});
+  rows.push_back({"moment_limit", "limit moment", "N m", contact.profile.profile->moment_limit() * moment_unit});
   rows.push_back({"moment", "moment", "N m", moment * moment_unit});
   if (units.shear_modulus)
-    rows.push_back({"twist_angle", "twist", "rad",
-                    twist * *units.friction * units.load / (*units.shear_modulus * a * a)});
+    rows.push_back(
+        {"twist_angle", "twist", "rad", twist * *units.friction * units.load / (*units.shear_modulus * a * a)});
   return rows;
 }
 
@@ -187,9 +183,7 @@ Json units_json(const std::vector<UnitsRow>& rows) {
   return {{"units", json}};
 }
 
-Json certified_json(const certified::Number& number) {
-  return {{"value", number.value}, {"radius", number.radius}};
-}
+Json certified_json(const certified::Number& number) { return {{"value", number.value}, {"radius", number.radius}}; }
 
 void write_header(std::ostream& out, const ExactContact& contact) {
   const Profile& profile = *contact.profile.profile;
@@ -199,11 +193,9 @@ void write_header(std::ostream& out, const ExactContact& contact) {
       "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 the {}: W = {:.9g} p0 a^2, M_lim = {:.9g} mu W "
       "a.\n",
       profile.name(), profile.reference_pressure(), profile.load(), profile.moment_limit());
-  if (profile.edge() > 0)
-    out << fmt::format("Everything sticks up to M/M_lim = {:.9g}.\n", profile.full_stick());
+  if (profile.edge() > 0) out << fmt::format("Everything sticks up to M/M_lim = {:.9g}.\n", profile.full_stick());
   if (const auto& table = contact.profile.table)
-    out << fmt::format("In the table's units: a = {:.9g}, p0 = {:.9g}.\n", table->radius,
-                       table->mean_pressure);
+    out << fmt::format("In the table's units: a = {:.9g}, p0 = {:.9g}.\n", table->radius, table->mean_pressure);
   out << '\n';
 }
 
@@ -273,16 +265,15 @@ AtPoints at_points(const StressField& field, const std::vector<BodyPoint>& point
   return list;
 }
 
-StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
-                         const std::vector<double>& radii, const std::optional<double>& unload_to) {
+StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
+                         const std::optional<double>& unload_to) {
   const Profile& profile = *contact.profile.profile;
   const TorsionState state = state_of(profile);
-  StateAnswer answer{
-      .contact = contact,
-      .numbers = {state, at_radii(radii, [&](double r) { return traction(state, r, profile); }),
-                  at_radii(radii, [&](double r) { return profile.pressure(r); })},
-      .energy_lost_per_cycle = number_of([&] { return energy_lost_per_cycle(state, profile); }),
-      .units = units_rows(contact, state.stick_ratio, state.moment, state.twist)};
+  StateAnswer answer{.contact = contact,
+                     .numbers = {state, at_radii(radii, [&](double r) { return traction(state, r, profile); }),
+                                 at_radii(radii, [&](double r) { return profile.pressure(r); })},
+                     .energy_lost_per_cycle = number_of([&] { return energy_lost_per_cycle(state, profile); }),
+                     .units = units_rows(contact, state.stick_ratio, state.moment, state.twist)};
   if (unload_to) {
     LoadingHistory history(profile);
     history.load_to(state.moment_ratio);
@@ -296,11 +287,10 @@ StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
           fmt::format("a pressure that fits the points as well has no such state: {}", failure.what());
     }
   if (profile.name() == hertz_profile().name()) {
-    answer.printed =
-        OtherLaws{at_radii(radii, [&](double r) { return paper::eq1_printed(state.stick_ratio, r); }),
-                  number_of([&] { return paper::eq5_moment(state.stick_ratio); }),
-                  number_of([&] { return paper::eq7_twist(state.moment); }),
-                  {}};
+    answer.printed = OtherLaws{at_radii(radii, [&](double r) { return paper::eq1_printed(state.stick_ratio, r); }),
+                               number_of([&] { return paper::eq5_moment(state.stick_ratio); }),
+                               number_of([&] { return paper::eq7_twist(state.moment); }),
+                               {}};
     for (const Approximation& law : approximations())
       answer.printed->law_twists.push_back(number_of([&] { return law.twist(state.moment); }));
   }
@@ -376,10 +366,8 @@ void write(std::ostream& out, const StateAnswer& answer) {
   for (const ExactQuantity& quantity : kExactQuantities) {
     const Number number{answer.numbers.state.*quantity.member};
     write_row(out, quantity.label, quantity.symbol, number);
-    if (printed && quantity.member == &TorsionState::twist)
-      write_beside(out, "Eq. (7)", number, printed->equation_7);
-    if (printed && quantity.member == &TorsionState::moment)
-      write_beside(out, "Eq. (5)", number, printed->equation_5);
+    if (printed && quantity.member == &TorsionState::twist) write_beside(out, "Eq. (7)", number, printed->equation_7);
+    if (printed && quantity.member == &TorsionState::moment) write_beside(out, "Eq. (5)", number, printed->equation_5);
     if (errors) out << fmt::format("   +/- {:.1e}", errors->numbers.state.*quantity.member);
     out << '\n';
   }
@@ -412,8 +400,8 @@ void write(std::ostream& out, const HistoryAnswer& answer) {
   out << fmt::format("{:>12}{:>26}{:>23}{:>27}\n", "M/M_lim", "twist G a^2 phi/(mu W)", "front a_s/a",
                      "lost, of (mu W)^2/(G a)");
   for (const auto& [state, tractions, stresses] : answer.history)
-    out << fmt::format("{:>12.9g}{:>26.15g}{:>23.15g}{:>27.15g}\n", state.moment_ratio, state.twist,
-                       state.stick_ratio, state.dissipated);
+    out << fmt::format("{:>12.9g}{:>26.15g}{:>23.15g}{:>27.15g}\n", state.moment_ratio, state.twist, state.stick_ratio,
+                       state.dissipated);
   for (const auto& [state, tractions, stresses] : answer.history) {
     if (tractions.empty() && stresses.empty()) continue;
     out << fmt::format("\nat M/M_lim = {:.9g}\n", state.moment_ratio);

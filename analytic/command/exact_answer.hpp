@@ -32,14 +32,13 @@ inline constexpr std::array kExactQuantities{
                   &certified::State::moment_ratio},
     ExactQuantity{"moment_deficit", "moment deficit", "1 - M/M_lim", &TorsionState::moment_deficit,
                   &certified::State::moment_deficit},
-    ExactQuantity{"stick_ratio", "stick ratio", "a_s/a", &TorsionState::stick_ratio,
-                  &certified::State::stick_ratio},
+    ExactQuantity{"stick_ratio", "stick ratio", "a_s/a", &TorsionState::stick_ratio, &certified::State::stick_ratio},
     ExactQuantity{"stick_complement", "stick complement", "1 - a_s/a", &TorsionState::stick_complement,
                   &certified::State::stick_complement},
     ExactQuantity{"twist", "twist", "G a^2 phi/(mu W)", &TorsionState::twist, &certified::State::twist},
     ExactQuantity{"moment", "moment", "M/(mu W a)", &TorsionState::moment, &certified::State::moment},
-    ExactQuantity{"tangent_stiffness", "tangent stiffness", "dM/dphi/(G a^3)",
-                  &TorsionState::tangent_stiffness, &certified::State::tangent_stiffness},
+    ExactQuantity{"tangent_stiffness", "tangent stiffness", "dM/dphi/(G a^3)", &TorsionState::tangent_stiffness,
+                  &certified::State::tangent_stiffness},
 };
 
 /// The normal side in SI units, and the constants that turn dimensionless results into SI units.
@@ -132,8 +131,8 @@ struct StateAnswer {
   std::optional<OtherLaws> printed = {};
   std::vector<UnitsRow> units = {};
 };
-StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of,
-                         const std::vector<double>& radii, const std::optional<double>& unload_to);
+StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
+                         const std::optional<double>& unload_to);
 Json to_json(const StateAnswer& answer);
 void write(std::ostream& out, const StateAnswer& answer);
 

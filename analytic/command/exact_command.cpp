@@ -34,11 +34,9 @@ struct Given {
 
 constexpr std::array kGiven{
     Given{"--moment-ratio", "M/M_lim, in [0, 1)", from_moment_ratio, certified::Quantity::moment_ratio},
-    Given{"--moment-deficit", "1 - M/M_lim, in (0, 1]", from_moment_deficit,
-          certified::Quantity::moment_deficit},
+    Given{"--moment-deficit", "1 - M/M_lim, in (0, 1]", from_moment_deficit, certified::Quantity::moment_deficit},
     Given{"--stick-ratio", "a_s/a, in (0, 1]", from_stick_ratio, certified::Quantity::stick_ratio},
-    Given{"--stick-complement", "1 - a_s/a, in [0, 1)", from_stick_complement,
-          certified::Quantity::stick_complement},
+    Given{"--stick-complement", "1 - a_s/a, in [0, 1)", from_stick_complement, certified::Quantity::stick_complement},
     Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist, certified::Quantity::twist},
 };
 
@@ -104,9 +102,9 @@ ExactContact contact(const Options& options) {
             .profile = naming("--profile", [&] { return find_profile(options.profile); }),
             .units = {}};
   PressedContact pressed = naming("--shape", [&] {
-    return press(options.profile, {.load = *options.normal_load,
-                                   .effective_modulus = *options.effective_modulus,
-                                   .shape = options.shape});
+    return press(
+        options.profile,
+        {.load = *options.normal_load, .effective_modulus = *options.effective_modulus, .shape = options.shape});
   });
   return {.name = options.profile,
           .profile = std::move(pressed.profile),
@@ -128,9 +126,9 @@ double load_of(double pressure, const Options& options, const ExactContact& exac
   const PressedContact twice =
       press(options.profile, {2.0 * exact.units->load, *options.effective_modulus, options.shape});
   if (twice.profile.profile->name() != exact.profile.profile->name())
-    throw std::domain_error(fmt::format(
-        "profile {}; allowed with --yield-stress: hertz, power:N, which keep their form under every load",
-        options.profile));
+    throw std::domain_error(
+        fmt::format("profile {}; allowed with --yield-stress: hertz, power:N, which keep their form under every load",
+                    options.profile));
   const double before = exact.units->indentation.reference_pressure;
   const double power = std::log(2.0) / std::log(twice.indentation.reference_pressure / before);
   return exact.units->load * std::pow(pressure / before, power);
@@ -151,8 +149,7 @@ AtPoints stresses(const Options& options, const State& state, double front, cons
         continue;
       }
       const auto comma = std::min(text.find(','), text.size());
-      points.push_back(
-          {number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
+      points.push_back({number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
     }
     AtPoints found = at_points(field, points, options.poisson, options.friction);
     for (std::size_t i = 0; i < found.size() && options.yield_stress; ++i) {
@@ -175,8 +172,8 @@ int run(const Options& options, std::ostream& out, Json& result) {
   const ExactContact exact = contact(options);
   const Profile& profile = *exact.profile.profile;
   if (!options.history.empty()) {
-    HistoryAnswer answer = naming(
-        "--history", [&] { return answer_history(exact, options.history, options.points, radii(options)); });
+    HistoryAnswer answer =
+        naming("--history", [&] { return answer_history(exact, options.history, options.points, radii(options)); });
     LoadingHistory history(profile);
     for (CyclePoint& point : answer.history) {
       history.load_to(point.state.moment_ratio);
@@ -213,21 +210,20 @@ void add_state_options(CLI::App& exact, Options& options) {
   CLI::Option_group* given = exact.add_option_group("state", "exactly one of these");
   for (std::size_t i = 0; i < kGiven.size(); ++i)
     options.given[i] = given->add_option(kGiven[i].option, options.value[i], kGiven[i].help);
-  CLI::Option* history = given->add_option("--history", options.history,
-                                           "M/M_lim at each turning point: m1,m2,...; gives the curve");
+  CLI::Option* history =
+      given->add_option("--history", options.history, "M/M_lim at each turning point: m1,m2,...; gives the curve");
   history->delimiter(',');
   given->require_option(1);
   exact.add_option("--points", options.points, "points of the curve on each branch of the history")
       ->check(CLI::Range(1, 1000000))
       ->needs(history)
       ->capture_default_str();
-  CLI::Option* unload = exact.add_option("--unload-to", options.unload_to,
-                                         "M/M_lim to unload to from the state, normal load constant");
+  CLI::Option* unload =
+      exact.add_option("--unload-to", options.unload_to, "M/M_lim to unload to from the state, normal load constant");
   unload->excludes(history);
-  CLI::Option* at =
-      exact.add_option("--at", options.at,
-                       "r,z over a, z the depth: stresses there; \"largest\" finds the point of "
-                       "the largest von Mises stress; once for each point");
+  CLI::Option* at = exact.add_option("--at", options.at,
+                                     "r,z over a, z the depth: stresses there; \"largest\" finds the point of "
+                                     "the largest von Mises stress; once for each point");
   exact.add_option("--poisson", options.poisson, "nu of the body whose stresses are asked for")
       ->check(CLI::Range(-1.0, 0.5))
       ->needs(at)
@@ -247,16 +243,15 @@ void add_state_options(CLI::App& exact, Options& options) {
 }
 
 void add_units_options(CLI::App& exact, Options& options) {
-  CLI::Option* load =
-      exact.add_option("--normal-load", options.normal_load, "W, N: gives results in SI units too");
-  CLI::Option* modulus = exact.add_option("--effective-modulus", options.effective_modulus,
-                                          "E*, Pa, 1/E* = sum of (1 - nu_i^2)/E_i");
+  CLI::Option* load = exact.add_option("--normal-load", options.normal_load, "W, N: gives results in SI units too");
+  CLI::Option* modulus =
+      exact.add_option("--effective-modulus", options.effective_modulus, "E*, Pa, 1/E* = sum of (1 - nu_i^2)/E_i");
   CLI::Option* shape = exact.add_option("--shape", options.shape, shape_words())->delimiter(',');
   load->needs(modulus)->needs(shape);
   modulus->needs(load);
   shape->needs(load);
-  CLI::Option* friction = exact.add_option(
-      "--friction", options.friction, "mu: with --normal-load moments in N m, with --at von Mises' stress");
+  CLI::Option* friction = exact.add_option("--friction", options.friction,
+                                           "mu: with --normal-load moments in N m, with --at von Mises' stress");
   friction->check(CLI::PositiveNumber);
   CLI::Option* shear = exact.add_option("--shear-modulus", options.shear_modulus,
                                         "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad");
@@ -269,8 +264,8 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
   CLI::App* exact = app.add_subcommand("exact", "exact solution of an axisymmetric contact in torsion");
   const auto options = std::make_shared<Options>();
   add_state_options(*exact, *options);
-  CLI::Option* radius = exact->add_option("--radius", options->radii,
-                                          "r/a, in [0, 1], where to give traction and pressure: r1,r2,...");
+  CLI::Option* radius =
+      exact->add_option("--radius", options->radii, "r/a, in [0, 1], where to give traction and pressure: r1,r2,...");
   radius->delimiter(',');
   exact->add_option("--profile", options->profile, profile_words())->capture_default_str();
   add_units_options(*exact, *options);

@@ -61,9 +61,7 @@ PiecewisePolynomial::PiecewisePolynomial(const RealFunction& f, std::vector<doub
   const std::size_t n = points == Points::fewer ? 22 : 24;
   std::vector<double> values(n);
   for (std::size_t i = 1; i < ends_.size(); ++i) {
-    const auto angle = [&](std::size_t j) {
-      return pi * (static_cast<double>(j) + 0.5) / static_cast<double>(n);
-    };
+    const auto angle = [&](std::size_t j) { return pi * (static_cast<double>(j) + 0.5) / static_cast<double>(n); };
     // cos^2 of half the angle keeps the digits of small distances from the lower end.
     for (std::size_t j = 0; j < n; ++j)
       values[j] = f(ends_[i - 1] + (ends_[i] - ends_[i - 1]) * std::pow(std::cos(angle(j) / 2), 2));
@@ -101,13 +99,11 @@ PiecewisePolynomial PiecewisePolynomial::derivative() const {
   return result;
 }
 
-CosineTransform::CosineTransform(const RealFunction& excess, double thickness, double reach, double unit,
-                                 Points points)
+CosineTransform::CosineTransform(const RealFunction& excess, double thickness, double reach, double unit, Points points)
     : thickness_(thickness / unit),
       points_(points),
       unit_(unit),
-      table_([&](double x) { return transformed(excess, thickness, x); }, doubling_ends(thickness, reach),
-             points) {}
+      table_([&](double x) { return transformed(excess, thickness, x); }, doubling_ends(thickness, reach), points) {}
 
 double Solution::operator()(double t) const {
   double value = right_side(t);
@@ -123,14 +119,12 @@ double Solution::moment(int power) const {
 
 std::vector<Solution> solve_fredholm(const CosineTransform& transform, Kernel kernel, double radius,
                                      const std::vector<RealFunction>& right_sides) {
-  const std::vector<Node> nodes =
-      gauss_nodes(panel_ends(radius, 4 * transform.thickness()), transform.points());
+  const std::vector<Node> nodes = gauss_nodes(panel_ends(radius, 4 * transform.thickness()), transform.points());
   const auto size = static_cast<Eigen::Index>(nodes.size());
   const auto node = [&](Eigen::Index i) { return nodes[static_cast<std::size_t>(i)]; };
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
   for (Eigen::Index i = 0; i < size; ++i)
-    for (Eigen::Index j = 0; j < size; ++j)
-      matrix(i, j) += node(j).weight * (transform.*kernel)(node(i).x, node(j).x);
+    for (Eigen::Index j = 0; j < size; ++j) matrix(i, j) += node(j).weight * (transform.*kernel)(node(i).x, node(j).x);
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(matrix);
   std::vector<Solution> solutions;
   for (const auto& right_side : right_sides) {

@@ -4,8 +4,7 @@
 
 #include "analytic/gsl.hpp"
 
-/// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the
-/// real axis.
+/// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the real axis.
 namespace slipstick::analytic::layered {
 
 /// All digits, or fewer points on each panel, by whose answer the error is estimated.

@@ -53,13 +53,11 @@ struct PressedRadius {
 LayeredContact contact_of(double load, double a, double scale, const PressedRadius& pressed, const Pair& pair,
                           Points points) {
   const bool sphere = pressed.curved != 0;
-  const double unit =
-      a / (2 * pressed.integral());  // the mean pressure is 1: psi over a has the integral 1/2
+  const double unit = a / (2 * pressed.integral());  // the mean pressure is 1: psi over a has the integral 1/2
   std::vector<double> ends = panel_ends(1, 2 * pair.thickness() / a);
   for (double& end : ends) end *= end;
   const PiecewisePolynomial slope =
-      PiecewisePolynomial([&](double y) { return unit * pressed.psi(a * std::sqrt(y)); }, ends, points)
-          .derivative();
+      PiecewisePolynomial([&](double y) { return unit * pressed.psi(a * std::sqrt(y)); }, ends, points).derivative();
   const Pressure pressure{sphere ? "coated_sphere" : "coated_flat_punch", "mean pressure",
                           PiecewisePolynomial([&](double y) { return -2 * slope(y); }, ends, points),
                           sphere ? 0 : unit * pressed.psi(a)};
@@ -70,15 +68,13 @@ LayeredContact contact_of(double load, double a, double scale, const PressedRadi
           .uncertainty = 0};
 }
 
-/// The contact radius is at most that on a half-space of the pair's largest compliance, but for the margin,
-/// since those between a layer and its base may overshoot both; on a rigid base and the thinnest layer it is
-/// some fortieth of that.
+/// The contact radius is at most that on a half-space of the pair's largest compliance, but for the margin, since those
+/// between a layer and its base may overshoot both; on a rigid base and the thinnest layer it is some fortieth of that.
 LayeredContact sphere_contact(double load, double radius, const Pair& pair, Points points) {
   constexpr double kMargin = 1.5;
   constexpr double kLowest = 1e-3;
   const double softest = pair.effective_modulus() / std::max(1.0, 1 + pair.normal_excess(0));
-  const double high =
-      std::min(kMargin * std::cbrt(3 * load * radius / (4 * softest)), kThinnest * pair.thickness());
+  const double high = std::min(kMargin * std::cbrt(3 * load * radius / (4 * softest)), kThinnest * pair.thickness());
   const CosineTransform transform = normal_transform(pair, high, points);
   const double wanted = load * radius / (2 * pair.effective_modulus());  // W = 2 (E*/R) integral psi
   const auto excess = [&](double log_radius) {
@@ -93,8 +89,7 @@ LayeredContact flat_contact(double load, double radius, const Pair& pair, Points
   require_resolved(radius, pair);
   const CosineTransform transform = normal_transform(pair, radius, points);
   const PressedRadius pressed(transform, radius, false);
-  return contact_of(load, radius, load / (2 * pair.effective_modulus() * pressed.integral()), pressed, pair,
-                    points);
+  return contact_of(load, radius, load / (2 * pair.effective_modulus() * pressed.integral()), pressed, pair, points);
 }
 
 /// The surfaces must touch everywhere within the contact radius, and slip must spread from the edge inwards:

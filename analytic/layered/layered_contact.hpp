@@ -24,9 +24,8 @@ struct LayeredContact {
 enum class Indenter { sphere, flat_punch };
 
 /// radius: relative radius of curvature of the sphere or paraboloid, or radius of the punch, m. Throws
-/// std::domain_error, with name and value, unless load and radius are positive and finite, and where the
-/// contact radius is more than 150 thicknesses, the surfaces would part within it, or slip would begin
-/// inside.
+/// std::domain_error, with name and value, unless load and radius are positive and finite, and where the contact radius
+/// is more than 150 thicknesses, the surfaces would part within it, or slip would begin inside.
 LayeredContact press(Indenter indenter, double load, double radius, const Pair& pair);
 
 }  // namespace slipstick::analytic::layered

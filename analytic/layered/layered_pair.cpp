@@ -47,14 +47,12 @@ double normal(const Elastic& surface, const Coat& coat, double wave_number) {
   const double below_b = 4 * (1 - nu) / (1 + m * (3 - 4 * coat.base.poisson_ratio));
   const double a = (m - 1) / (m + 3 - 4 * nu);
   const double b = 1 - below_b;
-  const double denominator =
-      below_a * below_b + a * below_b * rise * e + below_a * b * rise + a * sinh_excess(x);
+  const double denominator = below_a * below_b + a * below_b * rise * e + below_a * b * rise + a * sinh_excess(x);
   return e * (a + b + 4 * a * x * (1 + x) - 2 * a * b * e) / denominator;
 }
 
 template <class Excess>
-double weighted(const std::array<Body, 2>& bodies, const std::array<double, 2>& weights,
-                const Excess& excess) {
+double weighted(const std::array<Body, 2>& bodies, const std::array<double, 2>& weights, const Excess& excess) {
   double total = 0;
   for (std::size_t i = 0; i < 2; ++i)
     if (bodies[i].coat) total += weights[i] * excess(bodies[i].surface, *bodies[i].coat);
@@ -85,15 +83,13 @@ double Pair::thickness() const {
 }
 
 double Pair::normal_excess(double wave_number) const {
-  return weighted(bodies_, normal_, [&](const Elastic& surface, const Coat& coat) {
-    return normal(surface, coat, wave_number);
-  });
+  return weighted(bodies_, normal_,
+                  [&](const Elastic& surface, const Coat& coat) { return normal(surface, coat, wave_number); });
 }
 
 double Pair::torsional_excess(double wave_number) const {
-  return weighted(bodies_, tangential_, [&](const Elastic& surface, const Coat& coat) {
-    return torsional(surface, coat, wave_number);
-  });
+  return weighted(bodies_, tangential_,
+                  [&](const Elastic& surface, const Coat& coat) { return torsional(surface, coat, wave_number); });
 }
 
 }  // namespace slipstick::analytic::layered

@@ -64,8 +64,7 @@ class PressureIntegrals {
     // The load of the punch of radius x is 2 pi x^2 w.
     const auto nodes = gauss_nodes(panel_ends(1, 4 * thickness), points);
     load_ = 2 * pi * (edge_ + sum(nodes, [&](double x) { return x * x * weight_(x * x); }));
-    for (const Node& node : rings(0, 1 - kCentre))
-      limit_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
+    for (const Node& node : rings(0, 1 - kCentre)) limit_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
   }
 
   double pressure(double radius) const {
@@ -78,8 +77,7 @@ class PressureIntegrals {
 
   /// H(s) and -H'(s).
   double integral(StickRadius s) const {
-    if (s.ratio < kCentre)
-      return integral({kCentre, 1 - kCentre}) + pressure(0) * std::log(kCentre / s.ratio);
+    if (s.ratio < kCentre) return integral({kCentre, 1 - kCentre}) + pressure(0) * std::log(kCentre / s.ratio);
     return edge() + s.complement * growth_(s.complement);
   }
   double slope(StickRadius s) const {
@@ -158,8 +156,7 @@ class Stick {
     stiffness_ = 4 * pi * solutions_[0].moment(1);
     const double extra = turn_ * stiffness_ - 4 * pi * solutions_[1].moment(1);
     // y'(c) = 2 c^2 z'(c^2), since z(c^2) = 0.
-    const double y_slope =
-        2 * ends_.back() * z({*(ends_.end() - 2), ends_.back()}).derivative()(ends_.back());
+    const double y_slope = 2 * ends_.back() * z({*(ends_.end() - 2), ends_.back()}).derivative()(ends_.back());
     twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + y_slope) / solutions_[0](c.ratio);
     moment_ = extra;
     for (const Node& node : chi_) moment_ += 4 * pi * node.weight * node.x * node.value;
@@ -273,8 +270,7 @@ class LayeredProfile final : public Profile {
 
  private:
   std::shared_ptr<const Stick> stick(StickRadius c) const {
-    constexpr std::size_t kMaxKept =
-        200;  // a search for a load needs ten, which a history's branches use again
+    constexpr std::size_t kMaxKept = 200;  // a search for a load needs ten, which a history's branches use again
     const std::scoped_lock lock(mutex_);
     std::shared_ptr<const Stick>& known = sticks_[{c.ratio, c.complement}];
     if (known) return known;

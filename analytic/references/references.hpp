@@ -100,8 +100,7 @@ inline Replay replay(const Row& row) {
 inline std::vector<Row> all_references() {
   std::vector<Row> rows = read_references("certified_references.csv");
   for (const auto& file : std::filesystem::directory_iterator(std::string(SLIPSTICK_REFERENCES) + "/hardest"))
-    for (Row& row : read_references("hardest/" + file.path().filename().string()))
-      rows.push_back(std::move(row));
+    for (Row& row : read_references("hardest/" + file.path().filename().string())) rows.push_back(std::move(row));
   return rows;
 }
 

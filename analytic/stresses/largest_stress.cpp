@@ -34,11 +34,10 @@ std::vector<BodyPoint> sample_points(double stick_ratio) {
 
 }  // namespace
 
-LargestStress largest_stress(const StressField& field, double Severity::*measure, double friction,
-                             double poisson, double stick_ratio) {
+LargestStress largest_stress(const StressField& field, double Severity::*measure, double friction, double poisson,
+                             double stick_ratio) {
   const auto stress = [&](BodyPoint at) {
-    return LargestStress{severity(field.by_pressure(at, poisson), field.by_torsion(at), friction).*measure,
-                         at};
+    return LargestStress{severity(field.by_pressure(at, poisson), field.by_torsion(at), friction).*measure, at};
   };
   const auto smaller = [](const LargestStress& a, const LargestStress& b) { return a.value < b.value; };
   // From one point to the best of its eight neighbours, or to half the step.
@@ -64,15 +63,14 @@ LargestStress largest_stress(const StressField& field, double Severity::*measure
       profile.pressure(1) == 0 && std::isfinite(profile.pressure(0)) && std::isfinite(stress({0, 0}).value);
   if (!is_finite)
     throw std::domain_error(fmt::format(
-        "profile {}; allowed: pressures that are finite and end at zero, where no stress is infinite",
-        profile.name()));
+        "profile {}; allowed: pressures that are finite and end at zero, where no stress is infinite", profile.name()));
   std::vector<LargestStress> samples;
   for (const BodyPoint at : sample_points(stick_ratio)) samples.push_back(stress(at));
   std::ranges::stable_sort(samples, [&](const auto& a, const auto& b) { return smaller(b, a); });
   std::vector<LargestStress> starts;
   for (const LargestStress& sample : samples) {
-    const bool apart = std::ranges::all_of(
-        starts, [&](const auto& start) { return distance(sample.at, start.at) > 3 * kSpacing; });
+    const bool apart =
+        std::ranges::all_of(starts, [&](const auto& start) { return distance(sample.at, start.at) > 3 * kSpacing; });
     if (apart && starts.size() < kStarts) starts.push_back(sample);
   }
   std::ranges::transform(starts, starts.begin(), ascend);

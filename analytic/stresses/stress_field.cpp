@@ -26,8 +26,7 @@ constexpr double kOutside = 4;
 /// Over a. From farther away the narrowest slip rings leave the range of a double.
 constexpr double kLargestDistance = 1e6;
 
-/// One of the discs, seen from a point: s, and r - s with its own digits; the weight of the disc in an
-/// integral.
+/// One of the discs, seen from a point: s, and r - s with its own digits; the weight of the disc in an integral.
 struct Disc {
   StickRadius radius;
   double inside;
@@ -105,12 +104,11 @@ Potentials of_hertz(BodyPoint at) {
   const Roots roots(at, 1, at.radius - 1);
   const double angle = std::arg(roots.sum);
   const Complex w = at.radius / roots.sum;
-  return {
-      .chi = std::imag(roots.r) - z * angle,
-      .z_chi_z = z * (std::real(1.0 / roots.r) - angle),
-      .z_chi_r = z * std::imag((at.radius - z * w) / roots.r),
-      .z_v_r_over_r = z * (angle - std::imag(Complex(-z, 1) / roots.sum)) / 2,
-      .l_r_over_r = std::imag(roots.z * (z / 2 - roots.z / 3.0) / roots.sum - roots.r / 3.0) + z * angle / 2};
+  return {.chi = std::imag(roots.r) - z * angle,
+          .z_chi_z = z * (std::real(1.0 / roots.r) - angle),
+          .z_chi_r = z * std::imag((at.radius - z * w) / roots.r),
+          .z_v_r_over_r = z * (angle - std::imag(Complex(-z, 1) / roots.sum)) / 2,
+          .l_r_over_r = std::imag(roots.z * (z / 2 - roots.z / 3.0) / roots.sum - roots.r / 3.0) + z * angle / 2};
 }
 
 /// Fractions of a panel and weights of double exponential quadrature (Takahasi and Mori 1974), which does not
@@ -171,9 +169,7 @@ class Discs {
 
  private:
   /// s - r, from whichever of s and 1 - s holds the digits.
-  static double beyond(StickRadius s, double r) {
-    return s.ratio < 0.5 ? s.ratio - r : (1 - r) - s.complement;
-  }
+  static double beyond(StickRadius s, double r) { return s.ratio < 0.5 ? s.ratio - r : (1 - r) - s.complement; }
 
   Disc disc(double up, double down, double weight) const {
     const double u = start_ + up;
@@ -215,8 +211,7 @@ BodyPoint checked(BodyPoint at, const Profile& profile) {
   if (at.depth == 0 && at.radius <= 1) {
     const double pressure = profile.pressure(at.radius);
     if (!(at.radius == 1 ? pressure == 0 : std::isfinite(pressure)))
-      out_of_range("z/a", at.depth,
-                   fmt::format("above 0 at r/a = {}: the stress is infinite there", at.radius));
+      out_of_range("z/a", at.depth, fmt::format("above 0 at r/a = {}: the stress is infinite there", at.radius));
   }
   return {.radius = at.radius, .depth = std::max(at.depth, kSurface)};
 }
@@ -255,8 +250,7 @@ Severity severity(const PressureStress& pressure, const TorsionStress& torsion, 
           .tension = principal[2]};
 }
 
-StressField::StressField(const TorsionState& state, const Profile& profile)
-    : profile_(&profile), parts_{{1, state}} {}
+StressField::StressField(const TorsionState& state, const Profile& profile) : profile_(&profile), parts_{{1, state}} {}
 
 StressField::StressField(const LoadingHistory& history, const Profile& profile) : profile_(&profile) {
   for (const auto& [weight, amplitude] : history.branches())
@@ -278,10 +272,8 @@ PressureStress StressField::by_pressure(BodyPoint point, double poisson) const {
     if (profile_->edge() > 0) sum.add(of_punch(at, edge_disc(at)), 2 / pi * profile_->edge());
   }
   const double tt = (1 - 2 * poisson) * sum.l_r_over_r + sum.z_v_r_over_r - 2 * poisson * sum.chi;
-  return {.rr = -(1 + 2 * poisson) * sum.chi - sum.z_chi_z - tt,
-          .tt = tt,
-          .zz = sum.z_chi_z - sum.chi,
-          .rz = -sum.z_chi_r};
+  return {
+      .rr = -(1 + 2 * poisson) * sum.chi - sum.z_chi_z - tt, .tt = tt, .zz = sum.z_chi_z - sum.chi, .rz = -sum.z_chi_r};
 }
 
 TorsionStress StressField::by_torsion(BodyPoint point) const {

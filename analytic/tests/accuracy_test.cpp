@@ -29,8 +29,7 @@ TEST(Accuracy, HoldsForMomentAndStiffness) {
     const std::string& name = row.text("profile");
     const std::string& quantity = row.text("quantity");
     if (!limit_over_pi.contains(name) || (quantity != "moment_ratio" && quantity != "stick_ratio")) continue;
-    const TorsionState state =
-        testing::kFrom.at(row.text("given"))(row.argument("value"), *find_profile(name).profile);
+    const TorsionState state = testing::kFrom.at(row.text("given"))(row.argument("value"), *find_profile(name).profile);
     const long double reference = row.number("reference");
     const bool moment = quantity == "moment_ratio";
     const long double limit = limit_over_pi.at(name) * std::numbers::pi_v<long double>;

@@ -55,8 +55,7 @@ double potential(const TangentialState& state, const SelfSimilarIndenter& indent
   std::vector<double> ends{0, r, state.stick_ratio, 1};
   std::sort(ends.begin(), ends.end());
   double sum = 0;
-  for (std::size_t i = 1; i < ends.size(); ++i)
-    sum += testing::integral_between_roots(ring, ends[i - 1], ends[i]);
+  for (std::size_t i = 1; i < ends.size(); ++i) sum += testing::integral_between_roots(ring, ends[i - 1], ends[i]);
   return sum;
 }
 
@@ -82,9 +81,9 @@ TEST(CattaneoMindlin, HasTheStiffnessOfItsStickArea) {
   for (const auto& indenter : kRound)
     for (const double f : {0.1, 0.9}) {
       constexpr double kStep = 1e-5;
-      const double slope = 2 * kStep /
-                           (from_force_ratio(f + kStep, indenter).displacement -
-                            from_force_ratio(f - kStep, indenter).displacement);
+      const double slope =
+          2 * kStep /
+          (from_force_ratio(f + kStep, indenter).displacement - from_force_ratio(f - kStep, indenter).displacement);
       EXPECT_NEAR(slope / from_force_ratio(f, indenter).tangent_stiffness, 1, 1e-7);
     }
 }
@@ -114,17 +113,15 @@ TEST(CattaneoMindlin, LosesTheCubeOfASmallForce) {
   // 8 integral F ddelta - 4 F delta with delta = F/4 + q F^2/8, c = (1 - F)^q.
   for (const auto& indenter : kRound)
     for (const double f : {1e-6, 1e-50})
-      EXPECT_NEAR(energy_lost_per_cycle(from_force_ratio(f, indenter), indenter) /
-                      (indenter.radius_power() * f * f * f / 6),
-                  1, 2 * f + 1e-14);
+      EXPECT_NEAR(
+          energy_lost_per_cycle(from_force_ratio(f, indenter), indenter) / (indenter.radius_power() * f * f * f / 6), 1,
+          2 * f + 1e-14);
 }
 
 TEST(CattaneoMindlin, RefusesWhatLiesOutside) {
-  for (const double bad : {-0.1, 1.0, kNan})
-    EXPECT_THROW(from_force_ratio(bad, kSphere), std::domain_error) << bad;
+  for (const double bad : {-0.1, 1.0, kNan}) EXPECT_THROW(from_force_ratio(bad, kSphere), std::domain_error) << bad;
   const auto state = from_force_ratio(0.5, kSphere);
-  for (const double bad : {-0.1, 1.1, kNan})
-    EXPECT_THROW(traction(state, bad, kSphere), std::domain_error) << bad;
+  for (const double bad : {-0.1, 1.1, kNan}) EXPECT_THROW(traction(state, bad, kSphere), std::domain_error) << bad;
   EXPECT_THROW(traction(from_force_ratio(0.5, kFlat), 1, kFlat), std::domain_error);
   for (const double bad : {0.0, -2.0, -kInfinity, kNan})
     EXPECT_THROW(SelfSimilarIndenter{bad}, std::domain_error) << bad;

@@ -70,8 +70,8 @@ TEST(LoadingHistory, FollowsMasingsRuleOnABranch) {
       EXPECT_EQ(history.state().stick_ratio, at(half).stick_ratio);
       EXPECT_EQ(history.state().tangent_stiffness, at(half).tangent_stiffness);
       for (const double r : {0.1, 0.5, 0.8})
-        EXPECT_NEAR(history.traction(r),
-                    traction(at(0.95), r, *profile) - 2 * traction(at(half), r, *profile), 4 * kEps)
+        EXPECT_NEAR(history.traction(r), traction(at(0.95), r, *profile) - 2 * traction(at(half), r, *profile),
+                    4 * kEps)
             << profile->name() << ' ' << r;
     }
 }
@@ -88,9 +88,7 @@ TEST(LoadingHistory, IsAsItsShortestPathToTheLastBit) {
         Case{"inner loops leave nothing", {0.9, -0.5, 0.3, -0.1, 0.3, 0.6}, {0.9, -0.5, 0.6}},
         Case{"the largest moment so far wipes all out", {0.5, -0.4, 0.3, -0.2, 0.8}, {0.8}},
         Case{"the largest moment so far wipes all out", {0.5, -0.4, 0.3, -0.2, -0.8}, {-0.8}},
-        Case{"stops on the way do not count",
-             {0.3, 0.9, 0.5, -0.1, -0.7, 0.0, 0.9, 0.92, 0.95},
-             {0.9, -0.7, 0.95}},
+        Case{"stops on the way do not count", {0.3, 0.9, 0.5, -0.1, -0.7, 0.0, 0.9, 0.92, 0.95}, {0.9, -0.7, 0.95}},
         Case{"standing still changes nothing", {0.9, -0.5, 0.1, 0.1}, {0.9, -0.5, 0.1}}})
     for (const Profile* profile : testing::kClosedForms) {
       SCOPED_TRACE(fmt::format("{}: {}, {} moments", fact, profile->name(), path.size()));
@@ -112,8 +110,7 @@ TEST(LoadingHistory, MeetsTheFirstLoadingCurveOnTheOtherSide) {
       const auto before = loaded({m, -m * (1 - 1e-12)}, *profile);
       EXPECT_THAT(before.turning_points(), ElementsAre(m));
       EXPECT_NEAR(before.state().twist / mirrored.state().twist, 1, 1e-10) << profile->name() << ' ' << m;
-      EXPECT_NEAR(before.state().dissipated, mirrored.state().dissipated,
-                  1e-10 * mirrored.state().dissipated);
+      EXPECT_NEAR(before.state().dissipated, mirrored.state().dissipated, 1e-10 * mirrored.state().dissipated);
       EXPECT_NEAR(before.traction(0.5) / mirrored.traction(0.5), 1, 1e-10);
     }
 }
@@ -168,8 +165,8 @@ TEST(LoadingCurve, GoesThroughItsTurningPoints) {
 TEST(CycleRange, NamesGrossSlip) {
   LoadingHistory history;
   for (const double bad : {1.0, -1.0, 1.2, -HUGE_VAL})
-    EXPECT_THAT([&] { history.load_to(bad); }, ThrowsMessage<std::domain_error>(AllOf(
-                                                   HasSubstr("gross slip"), HasSubstr("-1 < M/M_lim < 1"))))
+    EXPECT_THAT([&] { history.load_to(bad); },
+                ThrowsMessage<std::domain_error>(AllOf(HasSubstr("gross slip"), HasSubstr("-1 < M/M_lim < 1"))))
         << bad;
   EXPECT_THAT([&] { history.load_to(-1.2); }, ThrowsMessage<std::domain_error>(HasSubstr("-1.2")));
 }
@@ -221,9 +218,7 @@ TEST(EnergyLost, GoesLikeTheCubeOfSmallMoments) {
 /// Then c is small, and the loop a parallelogram: M_lim up and down, phi to and fro.
 TEST(EnergyLost, GoesLikeTheTwistNearGrossSlip) {
   for (const Profile* profile : testing::kClosedForms) {
-    const auto lost = [&](double c) {
-      return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile);
-    };
+    const auto lost = [&](double c) { return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile); };
     const auto twist = [&](double c) { return from_stick_ratio(c, *profile).twist; };
     for (const double c : {1e-6, 1e-30, 1e-90})
       EXPECT_NEAR((lost(c) - lost(1e-5)) / (twist(c) - twist(1e-5)), 4 * profile->moment_limit(), 1e-9)
@@ -243,9 +238,7 @@ TEST(EnergyLost, KeepsItsDigitsWhereAFlatPunchBeginsToSlip) {
   const auto& punch = flat_punch_profile();
   for (const double w : {1e-6, 1e-7, 1e-9, 1e-15, 1e-100}) {
     const double expansion = w * w / 4 * (1 + w / 3);
-    EXPECT_NEAR(energy_lost_per_cycle(from_stick_complement(w, punch), punch) / expansion, 1,
-                w * w + 16 * kEps)
-        << w;
+    EXPECT_NEAR(energy_lost_per_cycle(from_stick_complement(w, punch), punch) / expansion, 1, w * w + 16 * kEps) << w;
   }
 }
 

@@ -37,22 +37,19 @@ double displacement(const Profile& profile, double r) {
 }
 
 /// The condition of a rigid body: within the contact the surface lies the gap below the approach.
-void expect_fit(const Indentation& contact, const Profile& profile,
-                const std::function<double(double)>& gap) {
+void expect_fit(const Indentation& contact, const Profile& profile, const std::function<double(double)>& gap) {
   const double unit = contact.reference_pressure * contact.contact_radius / kModulus;
   for (const double r : {0.05, 0.3, 0.6, 0.9, 0.99})
     EXPECT_NEAR(displacement(profile, r) * unit / (contact.approach - gap(r * contact.contact_radius)), 1,
                 1e-7)  // a flat punch's edge costs half the digits
         << profile.name() << ", r = " << r;
-  EXPECT_NEAR(
-      profile.load() * contact.reference_pressure * contact.contact_radius * contact.contact_radius / kLoad,
-      1, 1e-13)
+  EXPECT_NEAR(profile.load() * contact.reference_pressure * contact.contact_radius * contact.contact_radius / kLoad, 1,
+              1e-13)
       << profile.name();
 }
 
 TEST(Indentation, FitsTheBody) {
-  expect_fit(indent_sphere(kLoad, kRadius, kModulus), hertz_profile(),
-             [](double r) { return r * r / (2 * kRadius); });
+  expect_fit(indent_sphere(kLoad, kRadius, kModulus), hertz_profile(), [](double r) { return r * r / (2 * kRadius); });
   expect_fit(indent_cone(kLoad, 0.02, kModulus), cone_profile(), [](double r) { return 0.02 * r; });
   expect_fit(indent_flat_punch(kLoad, 1e-3, kModulus), flat_punch_profile(), [](double) { return 0; });
   for (const double n : {1.5, 3.0, 4.0, 20.0}) {
@@ -85,8 +82,7 @@ TEST(Indentation, OfASphereAndAConeIsThatOfAPowerAndOfARoundedPunch) {
   }
 }
 
-/// Sneddon 1965: W = 2 E* n/(n + 1) a d, d = kappa B a^n, with kappa = 1 * 2 * 4 ... n/(1 * 3 ... (n - 1))
-/// for even n.
+/// Sneddon 1965: W = 2 E* n/(n + 1) a d, d = kappa B a^n, with kappa = 1 * 2 * 4 ... n/(1 * 3 ... (n - 1)) for even n.
 TEST(Indentation, OfEvenPowersIsSneddons) {
   double kappa = 1;
   for (int i = 2; i <= 240; i += 2) {
@@ -135,14 +131,12 @@ TEST(Indentation, LastsToExtremeMagnitudes) {
       expect_finite(indent_cone(load, size, kModulus));
       expect_finite(indent_flat_punch(load, size, kModulus));
       for (const double n : {0.01, 2.0, 1000.0}) expect_finite(indent_power(load, n, size, kModulus));
-      for (const double b : {0.0, 1e-30, 1e30})
-        expect_finite(indent_rounded_punch(load, b, size, kModulus).contact);
+      for (const double b : {0.0, 1e-30, 1e30}) expect_finite(indent_rounded_punch(load, b, size, kModulus).contact);
     }
   // a^(n + 1) beyond the range of a double.
   expect_finite(indent_power(1e30, 1000, 1e-300, 1));
-  EXPECT_NEAR(
-      indent_power(1e30, 1000, 1e-300, 1).contact_radius / indent_power(1e30, 1000, 1e-250, 1).contact_radius,
-      std::pow(10, 50.0 / 1001), 1e-13);
+  EXPECT_NEAR(indent_power(1e30, 1000, 1e-300, 1).contact_radius / indent_power(1e30, 1000, 1e-250, 1).contact_radius,
+              std::pow(10, 50.0 / 1001), 1e-13);
 }
 
 TEST(Indentation, RefusesWhatIsNotPositive) {
@@ -166,12 +160,10 @@ TEST(Indentation, RefusesWhatIsNotPositive) {
               ThrowsMessage<std::domain_error>(HasSubstr("flat radius = -2; allowed: >= 0")));
 }
 
-/// Johnson 1985, Eqs. (4.26), in D = (K - E)/e^2 and B = K - D, which do not cancel: 1/R_1 = 2 p0 b/(E* a^2)
-/// D, 1/R_2 = 2 p0/(E* b) B, approach p0 b K/E*; by means, where the contact itself is found by Carlson's
-/// forms.
+/// Johnson 1985, Eqs. (4.26), in D = (K - E)/e^2 and B = K - D, which do not cancel: 1/R_1 = 2 p0 b/(E* a^2) D, 1/R_2 =
+/// 2 p0/(E* b) B, approach p0 b K/E*; by means, where the contact itself is found by Carlson's forms.
 TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
-  for (const double ratio :
-       {1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-6, 1.01, 2.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6}) {
+  for (const double ratio : {1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-6, 1.01, 2.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6}) {
     const double load = kLoad * ratio;  // of any size
     const auto contact = hertz_ellipse(load, kRadius, kRadius / ratio, kModulus);
     const double a = contact.semi_axis_1;
@@ -186,9 +178,8 @@ TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
   }
 }
 
-/// Gross slip about the axis: mu times the integral of p r. Along each direction p is a half ellipse, and r^2
-/// p integrates to pi/16 of peak times the cubed radius of the edge; the trapezoidal rule over the
-/// directions.
+/// Gross slip about the axis: mu times the integral of p r. Along each direction p is a half ellipse, and r^2 p
+/// integrates to pi/16 of peak times the cubed radius of the edge; the trapezoidal rule over the directions.
 TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
   constexpr int kDirections = 4000;
   for (const double ratio : {1.0, 1.0 + 1e-9, 3.0, 20.0, 1.0 / 20, 1e3}) {
@@ -196,8 +187,7 @@ TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
     double sum = 0;
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2 * pi * i / kDirections;
-      const double edge =
-          1 / std::hypot(std::cos(angle) / contact.semi_axis_1, std::sin(angle) / contact.semi_axis_2);
+      const double edge = 1 / std::hypot(std::cos(angle) / contact.semi_axis_1, std::sin(angle) / contact.semi_axis_2);
       sum += pi / 16 * contact.peak_pressure * edge * edge * edge;
     }
     EXPECT_NEAR(sum * 2 * pi / kDirections / kLoad / contact.friction_arm, 1, 1e-13) << ratio;

@@ -31,8 +31,7 @@ TEST(Equation1, MendedAgreesWithTheStableForm) {
 }
 
 TEST(Equation4, AgreesWithTheStableForm) {
-  for (const double c : {0.05, 0.3, 0.6, 0.9})
-    EXPECT_NEAR(eq4_twist(c) / from_stick_ratio(c).twist, 1, 1e-12) << c;
+  for (const double c : {0.05, 0.3, 0.6, 0.9}) EXPECT_NEAR(eq4_twist(c) / from_stick_ratio(c).twist, 1, 1e-12) << c;
 }
 
 TEST(Equation5, HoldsWhereItKeepsDigits) {
@@ -100,9 +99,8 @@ TEST(Approximations, AreOffAsTabulated) {
   struct Point {
     double moment_ratio, no_slip, small_moment, eq7, dem_moment;
   };
-  for (const auto& point : {Point{0.1, -4.5, -0.29, -0.093, 4.7},
-                            {0.5, -25.1, -8.5, -3.4, 33.5},
-                            {0.9, -56.4, -39.1, -23.6, 25.8}}) {
+  for (const auto& point :
+       {Point{0.1, -4.5, -0.29, -0.093, 4.7}, {0.5, -25.1, -8.5, -3.4, 33.5}, {0.9, -56.4, -39.1, -23.6, 25.8}}) {
     const double m = point.moment_ratio;
     EXPECT_NEAR(100 * error(no_slip_twist, m), point.no_slip, 0.05) << m;
     EXPECT_NEAR(100 * error(dem_twist, m), point.no_slip, 0.05) << m;

@@ -16,8 +16,7 @@ struct AnyProfile {
 };
 
 AnyProfile tabulated(const char* name, double (*pressure)(double), int intervals, bool graded) {
-  return {.profile = tabulated_profile(name, testing::sample(pressure, intervals, graded)).profile,
-          .roughness = 100};
+  return {.profile = tabulated_profile(name, testing::sample(pressure, intervals, graded)).profile, .roughness = 100};
 }
 
 const std::vector<AnyProfile>& every_profile() {
@@ -26,12 +25,10 @@ const std::vector<AnyProfile>& every_profile() {
     for (const Profile* const closed : {&hertz_profile(), &cone_profile()})
       list.push_back({.profile = {closed, [](const Profile*) {}}});
     for (const double n : {0.01, 0.5, 1.5, 4.0, 30.0, 1000.0}) list.push_back({.profile = power_profile(n)});
-    for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9})
-      list.push_back({.profile = rounded_punch_profile(b)});
+    for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9}) list.push_back({.profile = rounded_punch_profile(b)});
     list.push_back({.profile = {&constant_bound_profile(), [](const Profile*) {}}});
     for (const double cap : {0.05, 0.3, 0.9, 1.0}) list.push_back({.profile = capped_hertz_profile(cap)});
-    for (const double n : {0.1, 2.0 / 3, 1.0, 1.5, 3.0})
-      list.push_back({.profile = power_of_hertz_profile(n)});
+    for (const double n : {0.1, 2.0 / 3, 1.0, 1.5, 3.0}) list.push_back({.profile = power_of_hertz_profile(n)});
     list.push_back(tabulated("linear", testing::linear, 20, false));
     list.push_back(tabulated("hertz", testing::hertz, 50, true));
     list.push_back(tabulated(
@@ -55,8 +52,7 @@ TEST(AnyProfile, HasTheLoadOfItsPressure) {
   for (const auto& [profile, roughness] : every_profile()) {
     SCOPED_TRACE(profile->name());
     EXPECT_NEAR(moment_of_pressure(*profile, 1) / profile->load(), 1, 1e-9 * roughness);
-    EXPECT_NEAR(moment_of_pressure(*profile, 2) / profile->load() / profile->moment_limit(), 1,
-                1e-9 * roughness);
+    EXPECT_NEAR(moment_of_pressure(*profile, 2) / profile->load() / profile->moment_limit(), 1, 1e-9 * roughness);
   }
 }
 
@@ -73,8 +69,7 @@ TEST(AnyProfile, HasTheMomentOfItsTractions) {
         const double r = std::sin(t);
         return profile.pressure(r) * r * r * std::cos(t);
       };
-      const double moment =
-          2 * pi * (gsl::integral(stick, 0, pi / 2) + gsl::integral(slip, std::asin(c), pi / 2));
+      const double moment = 2 * pi * (gsl::integral(stick, 0, pi / 2) + gsl::integral(slip, std::asin(c), pi / 2));
       EXPECT_NEAR(moment / (profile.moment_share(at(c)).excess * profile.moment_limit() * profile.load()), 1,
                   1e-9 * roughness)
           << profile.name() << ", c = " << c;
@@ -89,13 +84,11 @@ TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
       SCOPED_TRACE(fmt::format("{}, c = {}", profile.name(), c));
       const double step = 1e-3 * c * (1 - c);
       const auto difference = [&](auto f) {  // of fourth order
-        return (8 * (f(at(c + step)) - f(at(c - step))) - (f(at(c + 2 * step)) - f(at(c - 2 * step)))) /
-               (12 * step);
+        return (8 * (f(at(c + step)) - f(at(c - step))) - (f(at(c + 2 * step)) - f(at(c - 2 * step)))) / (12 * step);
       };
       const double slope = difference([&](StickRadius s) { return profile.twist_integral(s); });
-      const double moment = difference([&](StickRadius s) {
-        return profile.moment_share(s).excess * profile.moment_limit() * profile.load();
-      });
+      const double moment = difference(
+          [&](StickRadius s) { return profile.moment_share(s).excess * profile.moment_limit() * profile.load(); });
       EXPECT_NEAR(-c * slope / profile.twist_slope(at(c)), 1, 1e-7 * roughness);
       EXPECT_NEAR(moment / slope / (8.0 / 3 * c * c * c), 1, 1e-6 * roughness);
     }
@@ -120,8 +113,7 @@ TEST(AnyProfile, KeepsTractionsBelowFrictionAndContinuous) {
 
 TEST(AnyProfile, IsMonotoneAndFiniteAtTheExtremes) {
   std::vector<StickRadius> sticks;
-  for (const double c : {1e-100, 1e-60, 1e-20, 1e-12, 1e-6, 0.01, 0.2, 0.5, 0.8, 0.99})
-    sticks.push_back(at(c));
+  for (const double c : {1e-100, 1e-60, 1e-20, 1e-12, 1e-6, 0.01, 0.2, 0.5, 0.8, 0.99}) sticks.push_back(at(c));
   for (const double w : {1e-6, 1e-12, 1e-30, 1e-100}) sticks.push_back({.ratio = 1 - w, .complement = w});
   for (const auto& [profile, roughness] : every_profile()) {
     double twist = std::numeric_limits<double>::infinity();

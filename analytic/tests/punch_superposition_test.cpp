@@ -31,8 +31,7 @@ TEST(Superposition, IsTheClosedFormWhereThereIsOne) {
 TEST(Superposition, AgreesWithReferences) {
   for (const auto& row : testing::read_references("profile_references.csv")) {
     const double parameter = row.argument("parameter");
-    const auto profile =
-        row.text("profile") == "power" ? power_profile(parameter) : rounded_punch_profile(parameter);
+    const auto profile = row.text("profile") == "power" ? power_profile(parameter) : rounded_punch_profile(parameter);
     const double value = row.argument("value");
     const StickRadius c = row.text("given") == "stick_ratio" ? at(value) : before_edge(value);
     const auto near = [&](double computed, const char* name) {
@@ -70,8 +69,7 @@ TEST(Superposition, ReachesTheLimitByItsLaw) {
     if (std::isinf(peak)) continue;
     const double c = 1e-40;
     const double law = 8.0 / 9 * c * c * c * peak / (profile->moment_limit() * profile->load());
-    EXPECT_NEAR(profile->moment_share(at(c)).deficit / law, 1,
-                profile->name() == "power:1.5" ? 1e-11 : kFewRoundings)
+    EXPECT_NEAR(profile->moment_share(at(c)).deficit / law, 1, profile->name() == "power:1.5" ? 1e-11 : kFewRoundings)
         << profile->name();
   }
   for (const double n : {0.01, 0.5}) {

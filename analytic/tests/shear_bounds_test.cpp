@@ -30,8 +30,7 @@ TEST(ShearBounds, HaveTheTwistOfTheirDefinition) {
   for (const double c : {0.05, 0.5, 0.95}) {
     for (const double cap : {0.4, 0.8}) {
       const auto profile = capped_hertz_profile(cap);
-      EXPECT_LE(relative_error(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-9)
-          << cap;
+      EXPECT_LE(relative_error(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-9) << cap;
     }
     for (const double n : {0.5, 2.0 / 3, 2.0}) {
       const auto profile = power_of_hertz_profile(n);
@@ -56,8 +55,7 @@ TEST(ShearBounds, HaveTheClosedFormsOfTheSquare) {
   for (const double c : {1e-9, 1e-3, 0.1, 0.4, 0.6}) {
     const double arcosh = std::acosh(1 / c);
     const double root = std::sqrt((1 - c) * (1 + c));
-    EXPECT_LE(relative_error(square->twist_integral(at(c)), (1 - c * c / 2) * arcosh - root / 2), 40 * kEps)
-        << c;
+    EXPECT_LE(relative_error(square->twist_integral(at(c)), (1 - c * c / 2) * arcosh - root / 2), 40 * kEps) << c;
     EXPECT_LE(relative_error(square->twist_slope(at(c)), root + c * c * arcosh), 20 * kEps) << c;
   }
 }
@@ -73,8 +71,7 @@ TEST(ShearBounds, GoForthAndBackByLoadDeficitAndTwist) {
       EXPECT_LE(relative_error(from_twist(state.twist, *profile).moment_ratio, m), 1e-13);
       EXPECT_LE(relative_error(from_moment_deficit(state.moment_deficit, *profile).twist, state.twist),
                 1e-13 + 4 * kEps / std::min(m, 1 - m));
-      EXPECT_LE(relative_error(from_stick_complement(state.stick_complement, *profile).moment_ratio, m),
-                1e-13);
+      EXPECT_LE(relative_error(from_stick_complement(state.stick_complement, *profile).moment_ratio, m), 1e-13);
     }
 }
 

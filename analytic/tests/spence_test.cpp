@@ -62,10 +62,8 @@ TEST(SpenceContact, IsAsStiffAsMossakovskiiSaysWhereFrictionIsLarge) {
 TEST(SpenceRange, RefusesWhatLiesOutside) {
   for (const auto function : {+[](double friction, double beta) { goodman_stick_radius(friction, beta); },
                               +[](double friction, double beta) { spence_contact(friction, beta); }}) {
-    for (const double bad : {0.0, -0.1, kInfinity, kNan})
-      EXPECT_THROW(function(bad, 0.3), std::domain_error) << bad;
-    for (const double bad : {0.0, 0.6, -0.6, kNan})
-      EXPECT_THROW(function(0.3, bad), std::domain_error) << bad;
+    for (const double bad : {0.0, -0.1, kInfinity, kNan}) EXPECT_THROW(function(bad, 0.3), std::domain_error) << bad;
+    for (const double bad : {0.0, 0.6, -0.6, kNan}) EXPECT_THROW(function(0.3, bad), std::domain_error) << bad;
     EXPECT_THROW(function(1e-4, 0.3), std::domain_error);
     EXPECT_THROW(function(70, 0.3), std::domain_error);
   }

@@ -30,8 +30,7 @@ TEST(TabulatedProfile, ReproducesALinearPressure) {
     EXPECT_NEAR(profile.load() / pi, 1, 1e-14);
     EXPECT_NEAR(profile.moment_limit(), 0.5, 1e-14);  // integral p r^2 over integral p r: (1/12)/(1/6)
     EXPECT_EQ(profile.edge(), 0);
-    for (const double r : {0.0, 0.123, 0.5, 0.999, 1.0})
-      EXPECT_NEAR(profile.pressure(r), 3 * (1 - r), 1e-14) << r;
+    for (const double r : {0.0, 0.123, 0.5, 0.999, 1.0}) EXPECT_NEAR(profile.pressure(r), 3 * (1 - r), 1e-14) << r;
     for (const double c : {1e-200, 1e-100, 1e-12, 0.01, 0.1, 0.35, 0.5, 0.9}) {
       const double x = std::sqrt((1 - c) * (1 + c));
       const double h = 3 * (std::log1p(x) - std::log(c) - x);
@@ -59,8 +58,7 @@ TEST(TabulatedProfile, HasTheMomentOfALinearPressure) {
     EXPECT_NEAR(table.profile->moment_share(at(c)).excess / (1 - lacking / limit), 1, 1e-11) << c;
   }
   for (const double c : {1e-90, 1e-30, 1e-9}) {  // (8/9) p(0) c^3
-    EXPECT_NEAR(table.profile->moment_share(at(c)).deficit / (8.0 / 9 * 3 * c * c * c / limit), 1, 1e-13)
-        << c;
+    EXPECT_NEAR(table.profile->moment_share(at(c)).deficit / (8.0 / 9 * 3 * c * c * c / limit), 1, 1e-13) << c;
     EXPECT_NEAR(table.profile->moment_share(at(c)).excess, 1, 1e-13) << c;
   }
 }
@@ -107,11 +105,9 @@ enum class Spacing { even, to_the_edge, uneven, to_the_axis };
 
 /// As a file holds it: radii to 6 digits, pressures to `digits` (0: all of both). Where the pressure is
 /// infinite, another one.
-std::vector<PressurePoint> as_in_a_file(const std::function<double(double)>& pressure, int points,
-                                        Spacing spacing, int digits, std::mt19937& random) {
-  const auto rounded = [](double x, int to) {
-    return to == 0 ? x : std::stod(fmt::format("{:.{}e}", x, to - 1));
-  };
+std::vector<PressurePoint> as_in_a_file(const std::function<double(double)>& pressure, int points, Spacing spacing,
+                                        int digits, std::mt19937& random) {
+  const auto rounded = [](double x, int to) { return to == 0 ? x : std::stod(fmt::format("{:.{}e}", x, to - 1)); };
   std::vector<PressurePoint> table;
   for (int i = 0; i < points; ++i) {
     constexpr double kLargestShift = 0.35;  // of the spacing
@@ -142,19 +138,16 @@ const std::vector<std::function<TorsionState(const Profile&)>> kQuestions{
 
 /// All over W or the mean pressure.
 std::vector<double> numbers_of(const TorsionState& state, const Profile& profile) {
-  std::vector<double> numbers{state.moment_ratio,    state.stick_ratio, state.stick_complement,
-                              state.twist,           state.moment,      state.tangent_stiffness,
-                              profile.moment_limit()};
-  for (const double r : {0.05, 0.5, 0.8, 0.95})
-    numbers.push_back(traction(state, r, profile) * pi / profile.load());
+  std::vector<double> numbers{state.moment_ratio, state.stick_ratio,       state.stick_complement, state.twist,
+                              state.moment,       state.tangent_stiffness, profile.moment_limit()};
+  for (const double r : {0.05, 0.5, 0.8, 0.95}) numbers.push_back(traction(state, r, profile) * pi / profile.load());
   return numbers;
 }
 
 /// The estimate is not below the error in any of thousands of numbers, nor much above it.
 TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
-  constexpr double kTruth = 1e-8;  // of the pressures known by points
-  constexpr double kUsualExcess =
-      30;  // an estimate that is too large by this factor still gives the digits to print
+  constexpr double kTruth = 1e-8;      // of the pressures known by points
+  constexpr double kUsualExcess = 30;  // an estimate that is too large by this factor still gives the digits to print
   std::mt19937 random(20240611);
   std::vector<double> excess;
   std::size_t below = 0;
@@ -167,9 +160,7 @@ TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
       const TabulatedProfile table =
           tabulated_profile(truth.name, as_in_a_file(truth.pressure, points, spacing, digits, random));
       for (const auto& question : kQuestions) {
-        const auto numbers = [&](const Profile& profile, double) {
-          return numbers_of(question(profile), profile);
-        };
+        const auto numbers = [&](const Profile& profile, double) { return numbers_of(question(profile), profile); };
         const std::vector<double> exact = numbers(*truth.profile, 1);
         const std::vector<double> found = numbers(*table.profile, 1);
         const std::vector<double> estimates = interpolation_errors(table, numbers);
@@ -178,9 +169,8 @@ TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
           const double noise = kTruth * std::abs(exact[i]);
           if (!(error <= estimates[i] + noise)) {
             ++below;
-            ADD_FAILURE() << truth.name << ", " << points << " points, spacing " << turn % 4 << ", digits "
-                          << digits << ", number " << i << ": " << found[i] << " +/- " << estimates[i]
-                          << ", truth " << exact[i];
+            ADD_FAILURE() << truth.name << ", " << points << " points, spacing " << turn % 4 << ", digits " << digits
+                          << ", number " << i << ": " << found[i] << " +/- " << estimates[i] << ", truth " << exact[i];
           }
           if (error > noise) excess.push_back(estimates[i] / error);
         }
@@ -188,8 +178,7 @@ TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
     }
   EXPECT_EQ(below, 0U);
   ASSERT_GT(excess.size(), 1000U);
-  std::nth_element(excess.begin(), excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2),
-                   excess.end());
+  std::nth_element(excess.begin(), excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2), excess.end());
   EXPECT_LT(excess[excess.size() / 2], kUsualExcess);
 }
 
@@ -197,8 +186,7 @@ TEST(InterpolationErrors, AreNotBelowTheErrorsNorFarAbove) {
 TEST(InterpolationErrors, TellThatOfTheMeanPressure) {
   for (const int intervals : {16, 33, 64, 501}) {
     const auto table = tabulated_profile("Hertz", sample(hertz, intervals));
-    const auto error =
-        interpolation_errors(table, [](const Profile&, double mean) { return std::vector{mean}; });
+    const auto error = interpolation_errors(table, [](const Profile&, double mean) { return std::vector{mean}; });
     EXPECT_LE(std::abs(table.mean_pressure - 2.0 / 3), error.at(0));
     EXPECT_GE(100 * std::abs(table.mean_pressure - 2.0 / 3), error.at(0));
   }
@@ -222,17 +210,15 @@ TEST(InterpolationErrors, SeeNoiseThatCancels) {
 TEST(InterpolationErrors, ThrowWhereAnotherReadingHasNoSuchNumber) {
   const auto table = tabulated_profile("Hertz", sample(hertz, 40));
   const double nan = std::nan("");
-  EXPECT_THROW(
-      interpolation_errors(table, [&](const Profile& p,
-                                      double) { return std::vector{&p == table.profile.get() ? 1.0 : nan}; }),
-      std::domain_error);
+  EXPECT_THROW(interpolation_errors(
+                   table, [&](const Profile& p, double) { return std::vector{&p == table.profile.get() ? 1.0 : nan}; }),
+               std::domain_error);
 }
 
 TEST(TabulatedProfile, ConvergesWithTheThirdPower) {
   const auto error = [](int intervals) {
     const auto table = tabulated_profile("Hertz", sample(hertz, intervals, true));
-    return std::abs(
-        table.profile->moment_share(at(0.5)).deficit / hertz_profile().moment_share(at(0.5)).deficit - 1);
+    return std::abs(table.profile->moment_share(at(0.5)).deficit / hertz_profile().moment_share(at(0.5)).deficit - 1);
   };
   EXPECT_LT(error(200) / error(100), 0.2);
   EXPECT_LT(error(1000), 1e-8);
@@ -241,8 +227,7 @@ TEST(TabulatedProfile, ConvergesWithTheThirdPower) {
 TEST(TabulatedProfile, KnowsNoUnits) {
   auto points = sample(hertz, 30, true);
   const auto table = tabulated_profile("one", points);
-  for (auto& point : points)
-    point = {.radius = point.radius * 0x1p-200, .pressure = point.pressure * 0x1p900};
+  for (auto& point : points) point = {.radius = point.radius * 0x1p-200, .pressure = point.pressure * 0x1p900};
   const auto scaled = tabulated_profile("other", points);
   EXPECT_EQ(scaled.radius, 0x1p-200);
   EXPECT_EQ(scaled.mean_pressure, table.mean_pressure * 0x1p900);
@@ -251,11 +236,9 @@ TEST(TabulatedProfile, KnowsNoUnits) {
 }
 
 TEST(TabulatedProfile, RefusesWhatIsNoContactPressure) {
-  const auto refused = [](std::vector<PressurePoint> points, const std::string& value,
-                          const std::string& allowed) {
-    EXPECT_THAT(
-        [&] { tabulated_profile("T", points); },
-        ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("T"), HasSubstr(value), HasSubstr(allowed))));
+  const auto refused = [](std::vector<PressurePoint> points, const std::string& value, const std::string& allowed) {
+    EXPECT_THAT([&] { tabulated_profile("T", points); },
+                ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("T"), HasSubstr(value), HasSubstr(allowed))));
   };
   const double nan = std::nan("");
   refused({}, "0 points", "at least 16");

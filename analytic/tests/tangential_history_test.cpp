@@ -79,8 +79,7 @@ TEST(TangentialHistory, ObeysMasingsRuleUnderAConstantLoad) {
       EXPECT_NEAR(history.state().displacement, up.displacement - 2 * down.displacement, kRounding);
       EXPECT_NEAR(history.state().stick_radius, down.stick_ratio, kRounding);
       for (const double r : {0.1, 0.5, 0.9})
-        EXPECT_NEAR(history.traction(r), traction(up, r, indenter) - 2 * traction(down, r, indenter),
-                    kRounding);
+        EXPECT_NEAR(history.traction(r), traction(up, r, indenter) - 2 * traction(down, r, indenter), kRounding);
       for (const double force : {back + 0.2, back + 0.1, most}) history.load_to(1, force);
       EXPECT_NEAR(history.state().displacement, up.displacement, kRounding);  // both loops are closed
       const double lost = energy_lost_per_cycle(up, indenter) / 4 + energy_lost_per_cycle(down, indenter) +
@@ -96,8 +95,7 @@ TEST(TangentialHistory, DoesNotSlipWhileForcesRiseAndFallTogether) {
       EXPECT_EQ(history.state().dissipated, 0);
       EXPECT_NEAR(history.state().displacement, k * indenter.approach(1) / 2, kRounding);
       EXPECT_EQ(history.state().stick_radius, 1);
-      for (const double r : {0.2, 0.7, 0.95})
-        EXPECT_NEAR(history.traction(r), k * indenter.pressure(1, r), kRounding);
+      for (const double r : {0.2, 0.7, 0.95}) EXPECT_NEAR(history.traction(r), k * indenter.pressure(1, r), kRounding);
       history.load_to(0.4, 0.4 * k);
       EXPECT_NEAR(history.state().dissipated, 0, kRounding);
       EXPECT_NEAR(history.state().displacement, k * indenter.approach(0.4) / 2, kRounding);
@@ -218,11 +216,9 @@ TEST(TangentialHistory, LosesTheWorkThatDoesNotComeBack) {
 
 TEST(TangentialHistory, RefusesWhatLiesOutside) {
   auto history = loaded({{1, 0}, {1, 0.5}});
-  for (const double bad : {0.0, -1.0, kInfinity, kNan})
-    EXPECT_THROW(history.load_to(bad, 0), std::domain_error) << bad;
+  for (const double bad : {0.0, -1.0, kInfinity, kNan}) EXPECT_THROW(history.load_to(bad, 0), std::domain_error) << bad;
   for (const double bad : {1.0, -1.0, kNan})
-    EXPECT_THAT([&] { history.load_to(1, bad); }, ThrowsMessage<std::domain_error>(HasSubstr("|F| < mu W")))
-        << bad;
+    EXPECT_THAT([&] { history.load_to(1, bad); }, ThrowsMessage<std::domain_error>(HasSubstr("|F| < mu W"))) << bad;
   expect_near(history, loaded({{1, 0}, {1, 0.5}}), 0);
   EXPECT_THROW(history.traction(-0.1), std::domain_error);
   EXPECT_THROW(history.traction(kNan), std::domain_error);

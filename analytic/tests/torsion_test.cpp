@@ -15,8 +15,8 @@ using testing::kFrom;
 using testing::relative_error;
 
 TEST(Torsion, AtNoLoadSticksEverywhere) {
-  for (const auto& state : {from_moment_ratio(0), from_moment_deficit(1), from_stick_ratio(1),
-                            from_stick_complement(0), from_twist(0)}) {
+  for (const auto& state :
+       {from_moment_ratio(0), from_moment_deficit(1), from_stick_ratio(1), from_stick_complement(0), from_twist(0)}) {
     EXPECT_EQ(state.moment_ratio, 0);
     EXPECT_EQ(state.moment_deficit, 1);
     EXPECT_EQ(state.stick_ratio, 1);
@@ -35,8 +35,7 @@ TEST(Torsion, KeepsItsDigitsALittleBeyondFullStick) {
   for (double beyond = 1e-3; beyond > 1e-13; beyond /= 3) {
     const double twist = stuck + beyond;
     const double exact_beyond = twist - stuck;
-    EXPECT_LE(relative_error(from_twist(twist, punch).stick_complement, 16 * exact_beyond),
-              1e-13 + 16 * exact_beyond)
+    EXPECT_LE(relative_error(from_twist(twist, punch).stick_complement, 16 * exact_beyond), 1e-13 + 16 * exact_beyond)
         << beyond;
   }
 }
@@ -51,8 +50,8 @@ TEST(Torsion, CarriesTheArgumentItself) {
 
 TEST(TorsionRange, NamesGrossSlip) {
   for (const double bad : {1.0, 1.2, HUGE_VAL})
-    EXPECT_THAT([&] { from_moment_ratio(bad); }, ThrowsMessage<std::domain_error>(AllOf(
-                                                     HasSubstr("gross slip"), HasSubstr("0 <= M/M_lim < 1"))))
+    EXPECT_THAT([&] { from_moment_ratio(bad); },
+                ThrowsMessage<std::domain_error>(AllOf(HasSubstr("gross slip"), HasSubstr("0 <= M/M_lim < 1"))))
         << bad;
   EXPECT_THAT([] { from_moment_ratio(1.2); }, ThrowsMessage<std::domain_error>(HasSubstr("1.2")));
   EXPECT_THAT([] { from_moment_deficit(0); }, ThrowsMessage<std::domain_error>(HasSubstr("gross slip")));

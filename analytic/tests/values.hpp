@@ -27,23 +27,19 @@ inline constexpr double kRadius = 0.018;     // m
 
 /// The front at a part c of the contact radius.
 inline StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
-inline StickRadius before_edge(double complement) {
-  return {.ratio = 1 - complement, .complement = complement};
-}
+inline StickRadius before_edge(double complement) { return {.ratio = 1 - complement, .complement = complement}; }
 
 namespace testing {
 
 /// The integral of f over [low, high], with square-root ends made smooth.
 inline double integral_between_roots(const std::function<double(double)>& f, double low, double high) {
   return gsl::integral(
-      [&](double t) {
-        return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t);
-      },
-      0, pi / 2);
+      [&](double t) { return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t); }, 0,
+      pi / 2);
 }
 
-inline const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(),
-                                                      &flat_punch_profile(), &constant_bound_profile()};
+inline const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(), &flat_punch_profile(),
+                                                      &constant_bound_profile()};
 
 /// Sampled at equal steps, or (graded) closer and closer towards the edge.
 inline std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,

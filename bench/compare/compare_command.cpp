@@ -34,8 +34,7 @@ std::string read_timings(const std::string& file) {
       "(--export-json) writes";
   std::string text = solver::read_input_file(file, solver::kLargestJson, kAllowed);
   if (as_utf8(text) == text) return text;
-  throw solver::InputError(file,
-                           fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
+  throw solver::InputError(file, fmt::format("is not JSON (bytes that are not UTF-8); allowed: {}", kAllowed));
 }
 
 int run_compare(const CompareRequest& request, std::ostream& text, Json& result) {

@@ -86,8 +86,8 @@ std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, c
 
 /// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
 Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
-  const solver::Scene scene = solver::read_scene(file, {fmt::format("grid.cells=[{0}, {0}]", kExactCells),
-                                                        fmt::format("load.moment_ratio={}", moment_ratio)});
+  const solver::Scene scene = solver::read_scene(
+      file, {fmt::format("grid.cells=[{0}, {0}]", kExactCells), fmt::format("load.moment_ratio={}", moment_ratio)});
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());
@@ -158,8 +158,7 @@ Json measure_plane(const PlaneOptions& options) {
   for (const Json& load : design.at("loads")) points += load.at("runs").size();
   convergence::Progress progress;
   progress.begin_runs(points, static_cast<double>(points), points);
-  for (const Json& load : design.at("loads"))
-    plane["scenes"].push_back(measure_load(options, load, progress));
+  for (const Json& load : design.at("loads")) plane["scenes"].push_back(measure_load(options, load, progress));
   plane["provenance"] = convergence::provenance(1);
   return plane;
 }

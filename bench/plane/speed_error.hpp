@@ -5,9 +5,8 @@
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/progress.hpp"
 
-/// The points of the speed-error plane: what each choice of method, operator, model, pressure, mesh and
-/// tolerance costs, and the error that it buys. The Python package (slipstick.speed.plane) designs and judges
-/// it.
+/// The points of the speed-error plane: what each choice of method, operator, model, pressure, mesh and tolerance
+/// costs, and the error that it buys. The Python package (slipstick.speed.plane) designs and judges it.
 ///
 /// The result, judged, is docs/schema/plane.schema.json; before, `seconds` has each repetition. Errors are
 /// relative, `errors` signed and of each grid, `error` their root mean square, work and certificate of the

@@ -27,8 +27,7 @@ Inputs spread() {
   return inputs;
 }
 
-/// The worst ratio of error to allowed error of a quantity, over the certified table and the hardest inputs
-/// known.
+/// The worst ratio of error to allowed error of a quantity, over the certified table and the hardest inputs known.
 Prepared judged(const std::string& profile, const std::string& given, const std::string& quantity) {
   analytic::testing::Replay worst{.error = 0, .allowed = analytic::testing::kAllowed};
   for (const auto& row : analytic::testing::all_references()) {
@@ -45,8 +44,7 @@ Prepared judged(const std::string& profile, const std::string& given, const std:
 /// Times f(i), i running over the inputs, one call an iteration.
 template <class Function>
 Prepared timed(Prepared prepared, Function f) {
-  prepared.timing =
-      repeated([f, i = std::size_t{0}]() mutable { benchmark::DoNotOptimize(f(i++ % kInputs)); });
+  prepared.timing = repeated([f, i = std::size_t{0}]() mutable { benchmark::DoNotOptimize(f(i++ % kInputs)); });
   return prepared;
 }
 
@@ -66,10 +64,9 @@ Prepared twist_from_stick_ratio(const std::string& name) {
 }
 
 Prepared state_from_stick_ratio(const std::string& name) {
-  return timed(judged(name, "stick_ratio", "moment_deficit"),
-               [ratios = spread(), &at = profile(name)](std::size_t i) {
-                 return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
-               });
+  return timed(judged(name, "stick_ratio", "moment_deficit"), [ratios = spread(), &at = profile(name)](std::size_t i) {
+    return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
+  });
 }
 
 Prepared one_traction(const std::string& name) {

@@ -27,8 +27,7 @@ Prepared solve(Index cells) {
   const auto model = std::make_shared<solver::Model>(solver::make_model(scene));
   const auto find = [scene, model] { return solver::find_pressure(scene, *model, scene.steps[0]); };
   const solver::NormalSolution found = find();
-  const double error =
-      convergence::pressure_error(model->stress_unit * found.pressure, exact, model->grid_in_m()).l2;
+  const double error = convergence::pressure_error(model->stress_unit * found.pressure, exact, model->grid_in_m()).l2;
   const double radius = solver::measure_contact_radius(*model, found.pressure);
   const bool right = error <= kPressureErrorTimesCells / static_cast<double>(cells);
   return {.counters = {{"error", error},
@@ -45,8 +44,6 @@ Prepared solve(Index cells) {
 
 }  // namespace
 
-void add_normal_benchmarks(Suite& suite) {
-  suite.add_sizes("normal/solve", {32, 64, 128, 256, 512, 1024}, solve);
-}
+void add_normal_benchmarks(Suite& suite) { suite.add_sizes("normal/solve", {32, 64, 128, 256, 512, 1024}, solve); }
 
 }  // namespace slipstick::bench

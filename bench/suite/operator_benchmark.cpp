@@ -35,9 +35,7 @@ solver::SharedLaw law() { return solver::half_spaces({2.0, 0.3}, {2.0, 0.3}); }
 
 Grid whole(Index cells) { return {cells, cells, 1.0, 1.0}; }
 
-Grid grid_of(const Form& form, Index cells) {
-  return form.quarter ? solver::quadrant_of(whole(cells)) : whole(cells);
-}
+Grid grid_of(const Form& form, Index cells) { return form.quarter ? solver::quadrant_of(whole(cells)) : whole(cells); }
 
 std::shared_ptr<LinearOperator> make(const Form& form, const Grid& grid) {
   return solver::make_operator(form.kind, grid, solver::tangential_kernel(), *law(), form.options);
@@ -166,10 +164,10 @@ Prepared bare_transforms(Index cells) {
   const std::size_t size = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
   const auto field = std::make_shared<FftwBuffer>(size);
   const auto spectrum = std::make_shared<FftwBuffer>(size + 2 * static_cast<std::size_t>(n));
-  const auto forward = std::make_shared<FftwPlan>(
-      fftw_plan_dft_r2c_2d(n, n, field->data(), spectrum->complex(), FFTW_ESTIMATE));
-  const auto backward = std::make_shared<FftwPlan>(
-      fftw_plan_dft_c2r_2d(n, n, spectrum->complex(), field->data(), FFTW_ESTIMATE));
+  const auto forward =
+      std::make_shared<FftwPlan>(fftw_plan_dft_r2c_2d(n, n, field->data(), spectrum->complex(), FFTW_ESTIMATE));
+  const auto backward =
+      std::make_shared<FftwPlan>(fftw_plan_dft_c2r_2d(n, n, spectrum->complex(), field->data(), FFTW_ESTIMATE));
   std::fill_n(field->data(), size, 0.0);  // planning has written there
   return {.counters = {{"GFLOP/s", rate(1e-9 * operations(OperatorKind::dcfft, cells))}},
           .timing = repeated([=] {
@@ -215,8 +213,8 @@ void add_operator_benchmarks(Suite& suite) {
   add("application/dcfft", application, {}, all);
   add("application/dcfft_2_threads", application, {.options = two_threads}, doubling(4, 1024));
   add("application/dcfft_quarter", application, quarter, doubling(16, 1024));
-  add("application/dcfft_quarter_with_diagonal", application,
-      {.options = {.diagonal = true}, .quarter = true}, doubling(16, 1024));
+  add("application/dcfft_quarter_with_diagonal", application, {.options = {.diagonal = true}, .quarter = true},
+      doubling(16, 1024));
 
   add("setup/dense", set_up, {.kind = OperatorKind::dense}, dense);
   add("setup/direct", set_up, {.kind = OperatorKind::direct}, direct);

@@ -54,9 +54,7 @@ int run(std::vector<std::string> words) {
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  return run(words_of(argc, argv));
-} catch (const std::exception& exception) {
+int main(int argc, char** argv) try { return run(words_of(argc, argv)); } catch (const std::exception& exception) {
   std::fprintf(stderr, "slipstick_benchmarks: %s\n", exception.what());
   return 2;
 }

@@ -42,8 +42,7 @@ Scene with_method(Scene scene, Method method, double tolerance) {
 Scene with_reversals(Scene scene, std::size_t reversals) {
   const double moment_ratio = *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion);
   scene.steps.resize(reversals + 1, scene.steps.front());
-  for (std::size_t i = 1; i < scene.steps.size(); i += 2)
-    scene.steps[i].torsion = solver::MomentRatio{-moment_ratio};
+  for (std::size_t i = 1; i < scene.steps.size(); i += 2) scene.steps[i].torsion = solver::MomentRatio{-moment_ratio};
   return scene;
 }
 
@@ -105,8 +104,7 @@ void add_solve_benchmarks(Suite& suite) {
   }
   for (const Index cells : {256, 512}) {
     const Load load{cells, 500};
-    suite.add((cells == 256 ? "" : "long/") + ("solve/with_force" + load.name()),
-              [load] { return with_force(load); });
+    suite.add((cells == 256 ? "" : "long/") + ("solve/with_force" + load.name()), [load] { return with_force(load); });
   }
 }
 

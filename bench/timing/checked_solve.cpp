@@ -54,15 +54,13 @@ std::string error_above_bound(const Scene& scene, double moment_ratio, const con
 
 CheckedSolution solve_and_check(const Scene& scene) {
   const convergence::Oracle exact = convergence::require_oracle(scene);
-  CheckedSolution checked{
-      .solution = convergence::solve_with_path(scene), .errors = {}, .invalid_reason = {}};
+  CheckedSolution checked{.solution = convergence::solve_with_path(scene), .errors = {}, .invalid_reason = {}};
   checked.errors = convergence::compare(checked.solution, exact);
   checked.invalid_reason = invalid_reason(scene, checked.solution, checked.errors);
   return checked;
 }
 
-std::string invalid_reason(const Scene& scene, const solver::Solution& solution,
-                           const convergence::Errors& errors) {
+std::string invalid_reason(const Scene& scene, const solver::Solution& solution, const convergence::Errors& errors) {
   if (solution.status != solver::Status::converged) return solution.message;
   const double gap = solution.certificate.gap;
   if (scene.solver.method != solver::Method::paper && !(gap <= scene.solver.tolerance)) {

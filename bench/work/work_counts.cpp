@@ -78,26 +78,26 @@ decltype(fftw_plan_many_dft_c2r) __real_fftw_plan_many_dft_c2r;
 fftw_plan __wrap_fftw_plan_dft_1d(int n, fftw_complex* in, fftw_complex* out, int sign, unsigned flags) {
   return count_plan(__real_fftw_plan_dft_1d(n, in, out, sign, flags), n);
 }
-fftw_plan __wrap_fftw_plan_many_dft(int rank, const int* n, int many, fftw_complex* in, const int* inembed,
-                                    int istride, int idist, fftw_complex* out, const int* onembed,
-                                    int ostride, int odist, int sign, unsigned flags) {
-  return count_plan(__real_fftw_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                              ostride, odist, sign, flags),
-                    many * product(rank, n));
+fftw_plan __wrap_fftw_plan_many_dft(int rank, const int* n, int many, fftw_complex* in, const int* inembed, int istride,
+                                    int idist, fftw_complex* out, const int* onembed, int ostride, int odist, int sign,
+                                    unsigned flags) {
+  return count_plan(
+      __real_fftw_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed, ostride, odist, sign, flags),
+      many * product(rank, n));
 }
-fftw_plan __wrap_fftw_plan_many_dft_r2c(int rank, const int* n, int many, double* in, const int* inembed,
-                                        int istride, int idist, fftw_complex* out, const int* onembed,
-                                        int ostride, int odist, unsigned flags) {
-  return count_plan(__real_fftw_plan_many_dft_r2c(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                                  ostride, odist, flags),
-                    many * product(rank, n));
+fftw_plan __wrap_fftw_plan_many_dft_r2c(int rank, const int* n, int many, double* in, const int* inembed, int istride,
+                                        int idist, fftw_complex* out, const int* onembed, int ostride, int odist,
+                                        unsigned flags) {
+  return count_plan(
+      __real_fftw_plan_many_dft_r2c(rank, n, many, in, inembed, istride, idist, out, onembed, ostride, odist, flags),
+      many * product(rank, n));
 }
-fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_complex* in,
-                                        const int* inembed, int istride, int idist, double* out,
-                                        const int* onembed, int ostride, int odist, unsigned flags) {
-  return count_plan(__real_fftw_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                                  ostride, odist, flags),
-                    many * product(rank, n));
+fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_complex* in, const int* inembed,
+                                        int istride, int idist, double* out, const int* onembed, int ostride, int odist,
+                                        unsigned flags) {
+  return count_plan(
+      __real_fftw_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed, ostride, odist, flags),
+      many * product(rank, n));
 }
 
 decltype(fftw_execute_dft) __real_fftw_execute_dft;
@@ -119,8 +119,8 @@ void __wrap_fftw_execute_dft_c2r(fftw_plan plan, fftw_complex* in, double* out) 
 
 // slipstick::solver::integrate_row
 decltype(slipstick::solver::integrate_row) __real__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd;
-void __wrap__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd(CellRow& row, Index first_block, double x,
-                                                                    double y, double h1, double h2) {
+void __wrap__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd(CellRow& row, Index first_block, double x, double y,
+                                                                    double h1, double h2) {
   counted.kernel_evaluations += (row.xx.cols() - first_block) * slipstick::solver::kLanes;
   __real__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd(row, first_block, x, y, h1, h2);
 }

@@ -8,8 +8,8 @@ struct WorkCounts {
   long plans = 0;               ///< made by FFTW
   long transforms = 0;          ///< calls of FFTW's functions that execute a plan
   long transformed_points = 0;  ///< lengths of all lines, or areas of all planes, that those transform
-  long allocations = 0;      ///< by operator new, by malloc and its like, by FFTW's functions that allocate
-  long allocated_bytes = 0;  ///< requested bytes, including memory that was freed again
+  long allocations = 0;         ///< by operator new, by malloc and its like, by FFTW's functions that allocate
+  long allocated_bytes = 0;     ///< requested bytes, including memory that was freed again
   long kernel_evaluations = 0;  ///< cells over which Boussinesq's and Cerruti's solutions were integrated
 };
 

@@ -27,8 +27,7 @@ using convergence::Json;
 
 /// The work that a solve reports; zeros for a case that is no solve.
 struct SolveWork {
-  double applications =
-      0.0;  ///< of the tangential operator, all grids converted to applications on the finest
+  double applications = 0.0;  ///< of the tangential operator, all grids converted to applications on the finest
   double pressure_applications = 0.0;  ///< of the normal operator, converted in the same way
   int iterations = 0;
 };
@@ -41,8 +40,7 @@ struct WorkCase {
   std::function<Work()> prepare;  ///< reads and makes what is not counted, and returns what is
 };
 
-WorkCase solve_case(const std::string& name, const std::string& scene_name,
-                    const std::vector<std::string>& overrides) {
+WorkCase solve_case(const std::string& name, const std::string& scene_name, const std::vector<std::string>& overrides) {
   return {name, [=]() -> Work {
             const auto file = std::filesystem::path(SLIPSTICK_SCENES) / (scene_name + ".toml");
             return [name, scene = solver::read_scene(file, overrides)] {
@@ -50,16 +48,14 @@ WorkCase solve_case(const std::string& name, const std::string& scene_name,
               if (solution.status != solver::Status::converged) {
                 throw std::runtime_error(fmt::format("{}: {}", name, solution.message));
               }
-              return SolveWork{solution.operator_applications, solution.pressure_applications,
-                               solution.iterations};
+              return SolveWork{solution.operator_applications, solution.pressure_applications, solution.iterations};
             };
           }};
 }
 
 std::unique_ptr<solver::LinearOperator> make_operator(solver::Index cells) {
   const solver::HalfSpaces law(solver::elastic_pair({2.0, 0.3}, {2.0, 0.3}));
-  return solver::make_operator(solver::OperatorKind::dcfft, {cells, cells, 1.0, 1.0},
-                               solver::tangential_kernel(), law);
+  return solver::make_operator(solver::OperatorKind::dcfft, {cells, cells, 1.0, 1.0}, solver::tangential_kernel(), law);
 }
 
 /// The tangential operator's coefficients and their transforms.

@@ -55,13 +55,10 @@ std::vector<MistakenScene> mistaken_scenes(const Scene& scene) {
     const auto member = each.member;
     const Material& body = scene.*member;
     if (!std::isinf(body.young_modulus)) {
-      add({mistake::one_compliance}, [&](Scene& s) {
-        s.*member = {std::numeric_limits<double>::infinity(), 0.0};
-      });
+      add({mistake::one_compliance}, [&](Scene& s) { s.*member = {std::numeric_limits<double>::infinity(), 0.0}; });
     }
     if (!body.coating) continue;
-    add({.mistake = mistake::layer_ignored, .subject = each.name},
-        [&](Scene& s) { (s.*member).coating.reset(); });
+    add({.mistake = mistake::layer_ignored, .subject = each.name}, [&](Scene& s) { (s.*member).coating.reset(); });
     add({.mistake = mistake::layer_exchanged, .subject = each.name}, [&](Scene& s) {
       Material& other = s.*member;
       std::swap(other.young_modulus, other.coating->young_modulus);
@@ -81,8 +78,7 @@ std::vector<MistakenScene> mistaken_scenes(const Scene& scene) {
   return mistakes;
 }
 
-/// The factor within 1/kWidest and kWidest under which a changed scene is nearest, by golden sections of its
-/// logarithm.
+/// The factor within 1/kWidest and kWidest under which a changed scene is nearest, by golden sections of its logarithm.
 template <typename Off>
 std::pair<double, double> nearest_factor(const Off& off) {
   constexpr double kWidest = 8.0;
@@ -133,17 +129,16 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
   return off <= allowed ? std::optional(Cause{mistake::modulus_factor, factor}) : std::nullopt;
 }
 
-/// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with
-/// one of them, solved on the field's cells, is the field's up to `allowed`. All that give it are listed; if
-/// none does, one with a fitted number (a layer's thickness, the moduli). Larger contacts than kQuickCells
-/// are not tried.
+/// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with one of them,
+/// solved on the field's cells, is the field's up to `allowed`. All that give it are listed; if none does, one with a
+/// fitted number (a layer's thickness, the moduli). Larger contacts than kQuickCells are not tried.
 std::vector<Cause> mistakes_in_pressure(const Examination& e, double allowed) {
   const bool solved = e.reference.pressure && e.scene.contact.pressure != solver::PressureModel::file;
   if (!solved || static_cast<double>(e.contact.grid.cells()) > kQuickCells) return {};
   std::vector<Cause> causes;
   for (MistakenScene& mistaken : mistaken_scenes(e.scene)) {
-    const bool known = std::ranges::any_of(
-        causes, [&](const Cause& cause) { return sentence(cause) == sentence(mistaken.cause); });
+    const bool known =
+        std::ranges::any_of(causes, [&](const Cause& cause) { return sentence(cause) == sentence(mistaken.cause); });
     if (known || !(off_from(e, mistaken.scene) <= allowed)) continue;
     mistaken.cause.alternative = !causes.empty();
     causes.push_back(std::move(mistaken.cause));
@@ -171,8 +166,8 @@ std::optional<Cause> lost_rows(const Examination& e, double allowed) {
 bool is_sampled_singularity(const Examination& e) {
   constexpr double kSampled = 1e-3;  // relative error in L1 of exact values at cell centres, rounded
   return e.exact.oracle && !std::isfinite(e.exact.oracle->normal.peak_pressure) &&
-         pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m())
-                 .l1 <= kSampled;
+         pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m()).l1 <=
+             kSampled;
 }
 
 /// The mistake that explains the ratio of the reported twist to the one that fits the tractions.
@@ -229,8 +224,7 @@ Cause kernel_cause(const Hypothesis& kernel, const Examination& e) {
 }
 
 /// Another friction, a wrong kernel, directions that slipping cells keep.
-std::vector<Cause> causes_in_tractions(const Examination& e, const Verdict& verdict,
-                                       const Diagnosis& diagnosis,
+std::vector<Cause> causes_in_tractions(const Examination& e, const Verdict& verdict, const Diagnosis& diagnosis,
                                        const std::optional<OtherFriction>& shown) {
   constexpr double kCollapsed = 0.1;  // gap that a kernel leaves, over the gap that it explains
   const Allowed& allowed = verdict.allowed;
@@ -265,8 +259,7 @@ Explanation explain(const Examination& e, const Verdict& verdict) {
   if (!all_hold({"friction", "friction_bound", "slip_direction", "gap", "tractions", "twist", "motion"})) {
     if (!all_hold({"friction", "friction_bound"}))
       friction = friction_shown(e.contact, e.reference.right, e.reference.regions);
-    found.diagnosis =
-        diagnose(e.contact, e.scene.steps.front(), verdict.allowed.gap, friction, !is_coated(e.scene));
+    found.diagnosis = diagnose(e.contact, e.scene.steps.front(), verdict.allowed.gap, friction, !is_coated(e.scene));
   }
   const bool right_pressure = all_hold({"normal_load_error", "pressure"});
   if (!right_pressure) {
@@ -280,8 +273,8 @@ Explanation explain(const Examination& e, const Verdict& verdict) {
   }
   if (const auto late = late_step(e, verdict)) found.causes.push_back(*late);
   if (!found.diagnosis || !right_pressure || !found.causes.empty()) return found;
-  const bool others_hold = std::ranges::all_of(
-      verdict.judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
+  const bool others_hold =
+      std::ranges::all_of(verdict.judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
   found.causes = e.twist_given && !verdict.holds("twist") && others_hold
                      ? std::vector<Cause>{twist_mistake(e, verdict.allowed.motion)}
                      : causes_in_tractions(e, verdict, *found.diagnosis, friction);

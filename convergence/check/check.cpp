@@ -24,8 +24,7 @@ const std::string kBroken = "not a number";
 /// Numbers of a field, in SI units.
 struct FieldState {
   explicit FieldState(const Examination& e)
-      : stick(find_stick_front(e.contact.grid, e.contact.friction_bound, e.state.slip,
-                               stick_cells(e.contact))) {
+      : stick(find_stick_front(e.contact.grid, e.contact.friction_bound, e.state.slip, stick_cells(e.contact))) {
     const GivenContact& c = e.contact;
     const double length = c.length_unit;
     stick.radius *= length;
@@ -71,9 +70,8 @@ Json judged_json(const std::vector<Judged>& judged) {
 
 Json hypothesis_json(const Hypothesis& hypothesis) {
   Json json{{"name", sentence(hypothesis.cause)}};
-  json.update(numbers(
-      {{"gap", hypothesis.gap}, {"stick_gap", hypothesis.stick_gap}, {"twist_angle", hypothesis.twist}},
-      kBroken));
+  json.update(numbers({{"gap", hypothesis.gap}, {"stick_gap", hypothesis.stick_gap}, {"twist_angle", hypothesis.twist}},
+                      kBroken));
   return json;
 }
 
@@ -114,10 +112,9 @@ Json errors_json(const FieldState& state, const Examination& e) {
   set("stick_radius_counted_error", state.stick.counted_radius, exact.stick_radius);
   set("contact_radius_error", state.contact_radius, exact.contact_radius);
   const GivenContact& c = e.contact;
-  json.update(
-      {{"pressure_error", to_json(make_field_error(
-                              pressure_error(c.stress_unit * c.pressure, exact, c.grid_in_m()), kNoNumber))},
-       {"traction_error", to_json(make_traction_error(traction_error_of(e, c.traction), unknown))}});
+  json.update({{"pressure_error",
+                to_json(make_field_error(pressure_error(c.stress_unit * c.pressure, exact, c.grid_in_m()), kNoNumber))},
+               {"traction_error", to_json(make_traction_error(traction_error_of(e, c.traction), unknown))}});
   return json;
 }
 
@@ -133,8 +130,8 @@ Json reference_json(const Examination& e) {
             {"distance", e.deviation.tractions},
             {"noise", reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff()}};
   if (e.exact.oracle && e.exact.oracle->shear) {
-    json.update({{"traction_error",
-                  to_json(make_traction_error(traction_error_of(e, reference.right.traction), kNoNumber))}});
+    json.update(
+        {{"traction_error", to_json(make_traction_error(traction_error_of(e, reference.right.traction), kNoNumber))}});
   }
   return json;
 }
@@ -160,10 +157,9 @@ std::string field_text(const FieldCheck& check) {
   const Examination& e = check.examination;
   const solver::Grid& grid = e.read.field.grid;
   std::string text = text_line("field", check.file.string());
-  text += text_line(
-      "grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick", grid.n1, grid.n2,
-                          number_text(grid.h1), number_text(grid.h2), (e.contact.pressure > 0.0).count(),
-                          (stick_cells(e.contact) > 0.0).count()));
+  text += text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick", grid.n1, grid.n2,
+                                        number_text(grid.h1), number_text(grid.h2), (e.contact.pressure > 0.0).count(),
+                                        (stick_cells(e.contact) > 0.0).count()));
   for (const auto& notes : {e.read.mistakes, e.read.conventions}) {
     for (const std::string& note : notes) text += text_line("note", note);
   }
@@ -179,13 +175,11 @@ std::string state_text(const Examination& e) {
     return std::abs(value) < kNone ? "   (no error)" : fmt::format("   (error {:+.1e})", value);
   };
   return text_line("normal load", number_text(state.normal_load) + " N") +
-         text_line("contact radius", number_text(state.contact_radius) + " m" +
-                                         error(state.contact_radius, &Oracle::contact_radius)) +
-         text_line("moment",
-                   fmt::format("{} N m, at most {}{}", number_text(state.moment),
-                               number_text(state.moment_limit), error(state.moment, &Oracle::moment))) +
-         text_line("twist", number_text(e.state.twist) + " rad" +
-                                (e.twist_given ? "" : ", which fits the tractions") +
+         text_line("contact radius",
+                   number_text(state.contact_radius) + " m" + error(state.contact_radius, &Oracle::contact_radius)) +
+         text_line("moment", fmt::format("{} N m, at most {}{}", number_text(state.moment),
+                                         number_text(state.moment_limit), error(state.moment, &Oracle::moment))) +
+         text_line("twist", number_text(e.state.twist) + " rad" + (e.twist_given ? "" : ", which fits the tractions") +
                                 error(e.state.twist, &Oracle::twist_angle)) +
          text_line("stick radius",
                    number_text(state.stick.radius) + " m" + error(state.stick.radius, &Oracle::stick_radius));
@@ -196,19 +190,18 @@ std::string traction_text(const Examination& e) {
   const FieldError found = traction_error_of(e, e.contact.traction).at_centres;
   if (!std::isfinite(found.l1)) return text_line("exact answer", unknown_text(*e.exact.oracle));
   const FieldError right = traction_error_of(e, e.reference.right.traction).at_centres;
-  return text_line("traction error", fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}",
-                                                 number_text(found.l1), number_text(found.l2),
-                                                 number_text(right.l1), number_text(right.l2)));
+  return text_line("traction error",
+                   fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}", number_text(found.l1),
+                               number_text(found.l2), number_text(right.l1), number_text(right.l2)));
 }
 
 std::string certificate_text(const Examination& e) {
-  return text_line("certificate",
-                   fmt::format("moment off by {}, |q| above {} by {}", number_text(e.certificate.moment),
-                               solver::bound_text(e.scene.contact.friction.kind),
-                               number_text(e.certificate.friction_bound))) +
-         text_line("slip direction", fmt::format("{} degrees off in the mean, {} at most ({})",
-                                                 number_text(e.direction.mean), number_text(e.direction.max),
-                                                 right_direction_text(e.scene.contact.friction.kind)));
+  return text_line("certificate", fmt::format("moment off by {}, |q| above {} by {}", number_text(e.certificate.moment),
+                                              solver::bound_text(e.scene.contact.friction.kind),
+                                              number_text(e.certificate.friction_bound))) +
+         text_line("slip direction",
+                   fmt::format("{} degrees off in the mean, {} at most ({})", number_text(e.direction.mean),
+                               number_text(e.direction.max), right_direction_text(e.scene.contact.friction.kind)));
 }
 
 }  // namespace
@@ -246,13 +239,11 @@ std::string FieldCheck::details() const {
   if (!causes.empty()) parts.push_back(causes);
   if (wrong.size() > 1) parts.push_back("also wrong: " + listed({wrong.begin() + 1, wrong.end()}));
   if (!right.empty()) parts.push_back(listed(right));
-  if (verdict.within_mesh() || discrete.holds())
-    parts.push_back(discrete.holds() ? discrete.right : discrete.wrong);
+  if (verdict.within_mesh() || discrete.holds()) parts.push_back(discrete.holds() ? discrete.right : discrete.wrong);
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file,
-                       const CheckOptions& options) {
+FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
   Examination examination = examine(scene, file, options);
   Verdict verdict = reach_verdict(examination, options.tolerance);
   Explanation explanation = explain(examination, verdict);
@@ -267,8 +258,7 @@ Json to_json(const FieldCheck& check) {
   const std::string headline = check.headline();
   const std::string details = check.details();
   Json json{{"name", e.scene.name}, {"field", check.file.string()}};
-  if (!e.scene.contact.friction.is_coulomb())
-    json.update({{"friction_law", to_string(e.scene.contact.friction.kind)}});
+  if (!e.scene.contact.friction.is_coulomb()) json.update({{"friction_law", to_string(e.scene.contact.friction.kind)}});
   Json own_grid{{"holds", discrete.holds()}};
   set_number(own_grid, "gap", discrete.value, "|q| exceeds its bound: there is no gap");
   set_number(own_grid, "allowed", discrete.allowed, kBroken);

@@ -42,10 +42,9 @@ struct Judged {
   bool holds() const { return value <= allowed; }
 };
 
-/// Two answers. Is the field right within its mesh? Pressure, loads, motion, tractions and Coulomb's law are
-/// judged in the mean and cell by cell, against the errors of right fields of any discretisation on the same
-/// mesh, or against the user's tolerance. Does it solve its own grid's problem, with constant tractions in
-/// each cell, up to iteration error?
+/// Two answers. Is the field right within its mesh? Pressure, loads, motion, tractions and Coulomb's law are judged in
+/// the mean and cell by cell, against the errors of right fields of any discretisation on the same mesh, or against the
+/// user's tolerance. Does it solve its own grid's problem, with constant tractions in each cell, up to iteration error?
 struct Verdict {
   std::vector<Judged> judged;  ///< in the order in which one quantity follows from another
   Judged discrete;
@@ -121,8 +120,7 @@ struct FieldCheck {
 ///
 /// Without a twist, the scene's is taken if it imposes one, otherwise the one that fits Coulomb's law best.
 /// Throws InputError for a field or a scene that cannot be judged.
-FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file,
-                       const CheckOptions& options = {});
+FieldCheck check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options = {});
 
 /// The result in SI units, docs/schema/check.schema.json.
 Json to_json(const FieldCheck& check);

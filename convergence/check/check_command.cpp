@@ -45,8 +45,7 @@ int run_judge(const char* module, const Json& request, std::ostream& text, Json&
 
 int judge_file(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
   if (request.check.twist && !std::isfinite(*request.check.twist)) {
-    throw solver::InputError(fmt::format("--twist {}", *request.check.twist),
-                             "allowed: a finite number, in rad");
+    throw solver::InputError(fmt::format("--twist {}", *request.check.twist), "allowed: a finite number, in rad");
   }
   if (const auto& tolerance = request.check.tolerance; tolerance && !(*tolerance > 0.0)) {
     throw solver::InputError("check", "--tolerance", fmt::format("{}", *tolerance), "larger than zero");
@@ -71,8 +70,8 @@ int judge_file(const CLI::App& command, const CheckRequest& request, std::ostrea
                                "has stresses below the surface; allowed: --tolerance, --strict, --columns "
                                "and --read-as body=lower or body=upper");
     }
-    return run_judge("subsurface", stress_request(scene, request.field, request.check, request.mesh.read_as),
-                     text, result);
+    return run_judge("subsurface", stress_request(scene, request.field, request.check, request.mesh.read_as), text,
+                     result);
   }
   if (request.mesh.any() || (request.check.columns.empty() && is_mesh_file(request.field))) {
     if (request.check.discrete || request.check.pressure_given || !request.check.columns.empty()) {
@@ -138,26 +137,23 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       app.add_subcommand("check", "Judge a traction field, stresses or a loop that any program computed");
   command->add_option("scene", request->scene, "scene file (TOML) that the program solved")->required();
   command
-      ->add_option(
-          "field", request->field,
-          "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: text, .h5 or .vti; or a "
-          "field at any points or on a mesh: text, .vtu, .vtk, .frd, .xdmf, ...; or stresses at x1, x2, x3 "
-          "(depth, m): some of s11, s22, s33, s12, s13, s23 (Pa), text; or a loop: moment (N m), rotation "
-          "(rad), or force (N), displacement (m), and perhaps time, normal_load: text or .json")
+      ->add_option("field", request->field,
+                   "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: text, .h5 or .vti; or a "
+                   "field at any points or on a mesh: text, .vtu, .vtk, .frd, .xdmf, ...; or stresses at x1, x2, x3 "
+                   "(depth, m): some of s11, s22, s33, s12, s13, s23 (Pa), text; or a loop: moment (N m), rotation "
+                   "(rad), or force (N), displacement (m), and perhaps time, normal_load: text or .json")
       ->required();
   add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
   command
-      ->add_option(
-          "--columns", request->check.columns,
-          "names of all columns of a field without a header, in order, as x1,x2,pressure,q1,q2; of HDF5 the "
-          "paths of these five")
+      ->add_option("--columns", request->check.columns,
+                   "names of all columns of a field without a header, in order, as x1,x2,pressure,q1,q2; of HDF5 the "
+                   "paths of these five")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--twist", request->check.twist,
                       "rad, that the program reported; without it your twist is not judged");
-  command->add_flag(
-      "--discrete", request->check.discrete,
-      "good only if it solves its own grid's problem, of constant cells, up to iteration error");
+  command->add_flag("--discrete", request->check.discrete,
+                    "good only if it solves its own grid's problem, of constant cells, up to iteration error");
   command->add_option(
       "--tolerance", request->check.tolerance,
       "error of loads, twist and tractions that is allowed, instead of the one derived from the mesh; of a "
@@ -169,16 +165,14 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
   command->add_option("--junit", request->junit, "write the verdict as JUnit's XML to this file");
   command->add_option("--summary", request->summary, "add the verdict in Markdown to this file");
   MeshOptions& mesh = request->mesh;
-  command->add_option(
-      "--stick-slope", mesh.stick_slope,
-      "Pa/m, of a field on a mesh: shear stress over the slip at which its penalty lets it stick");
+  command->add_option("--stick-slope", mesh.stick_slope,
+                      "Pa/m, of a field on a mesh: shear stress over the slip at which its penalty lets it stick");
   command->add_option("--normal-stiffness", mesh.normal_stiffness,
                       "Pa/m, of a field on a mesh: pressure over the penetration of its penalty");
   command
-      ->add_option(
-          "--held-at", mesh.held_at,
-          "m, of a field on a mesh: radius at which the bodies are held, perhaps with a factor of its "
-          "effect on the reported twist")
+      ->add_option("--held-at", mesh.held_at,
+                   "m, of a field on a mesh: radius at which the bodies are held, perhaps with a factor of its "
+                   "effect on the reported twist")
       ->delimiter(',')
       ->expected(1, 2)
       ->allow_extra_args(false);

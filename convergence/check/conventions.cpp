@@ -59,11 +59,10 @@ void correct_length(Interpretation& read, const solver::Scene& scene, double exp
   const double width = longer_side(field.grid);
   const auto unit = find_unit(kLengths, width / expected);
   if (!unit) {
-    throw InputError(
-        field.file.string(),
-        fmt::format("the cells reach over {:.4g}; allowed: positions in m, where the contact of {} "
-                    "is about {:.4g} wide (mm, micrometres and nm are understood)",
-                    width, scene.source.string(), expected));
+    throw InputError(field.file.string(),
+                     fmt::format("the cells reach over {:.4g}; allowed: positions in m, where the contact of {} "
+                                 "is about {:.4g} wide (mm, micrometres and nm are understood)",
+                                 width, scene.source.string(), expected));
   }
   if (unit->size == 1.0) return;
   read.conventions.push_back(
@@ -81,29 +80,26 @@ void correct_stress(Interpretation& read, const solver::Step& load) {
   const double carried = field.pressure.sum() * field.grid.cell_area();
   const auto unit = find_unit(kStresses, carried / *load.normal);
   if (!unit) {
-    throw InputError(
-        field.file.string(),
-        fmt::format("the pressure carries {:.6g} N if it is in Pa; allowed: about {}.normal = {} N "
-                    "(kPa, MPa and GPa are understood)",
-                    carried, load.key, *load.normal));
+    throw InputError(field.file.string(),
+                     fmt::format("the pressure carries {:.6g} N if it is in Pa; allowed: about {}.normal = {} N "
+                                 "(kPa, MPa and GPa are understood)",
+                                 carried, load.key, *load.normal));
   }
   const double off = carried * unit->size / *load.normal - 1.0;
   const bool corrected = unit->size != 1.0 || !read.conventions.empty();
   if (corrected && !(std::abs(off) < kCorrectedLoad)) {
-    throw InputError(
-        field.file.string(),
-        fmt::format("in no units that are understood does the pressure carry {}.normal = {} N; allowed: "
-                    "positions in m and stresses in Pa (nm, micrometres, mm, kPa, MPa and GPa are "
-                    "understood)",
-                    load.key, *load.normal));
+    throw InputError(field.file.string(),
+                     fmt::format("in no units that are understood does the pressure carry {}.normal = {} N; allowed: "
+                                 "positions in m and stresses in Pa (nm, micrometres, mm, kPa, MPa and GPa are "
+                                 "understood)",
+                                 load.key, *load.normal));
   }
   if (unit->size == 1.0) return;
   read.conventions.push_back(
       fmt::format("pressure and tractions look like {}: in Pa they would carry {:.4g} N of "
                   "{} N",
                   unit->name, carried, *load.normal));
-  for (ArrayXd* stress :
-       {&field.pressure, &field.traction, &field.pressure_rounding, &field.traction_rounding}) {
+  for (ArrayXd* stress : {&field.pressure, &field.traction, &field.pressure_rounding, &field.traction_rounding}) {
     *stress *= unit->size;
   }
 }
@@ -141,8 +137,7 @@ void correct_axes(Interpretation& read, const solver::Scene& scene) {
   const double expected = 2.0 * std::log(ratio);
   const double found = std::log(aspect(field));
   if (!(std::abs(found + expected) < 0.5 * std::abs(found - expected))) return;
-  read.conventions.push_back(
-      "axes look exchanged: the contact's long axis lies along the file's other coordinate");
+  read.conventions.push_back("axes look exchanged: the contact's long axis lies along the file's other coordinate");
   const solver::Grid from = field.grid;
   const Index cells = from.cells();
   field.grid = {from.n2, from.n1, from.h2, from.h1};
@@ -154,8 +149,7 @@ void correct_axes(Interpretation& read, const solver::Scene& scene) {
 /// Whether the scene has one smooth body about an axis, whose pressure is computed.
 bool has_axis(const solver::Scene& scene) {
   return scene.surfaces.size() == 1 && scene.contact.pressure != solver::PressureModel::file &&
-         solver::find_height_map(scene.surfaces) == nullptr &&
-         scene.surfaces.front().shape != solver::Shape::roughness;
+         solver::find_height_map(scene.surfaces) == nullptr && scene.surfaces.front().shape != solver::Shape::roughness;
 }
 
 /// Sum of the distances of a field's pressure from the exact one, at its cells.
@@ -190,14 +184,13 @@ void correct_corner(Interpretation& read, const solver::Scene& scene, const solv
   const std::array<double, 2> half{0.5 * static_cast<double>(in_m.n1) * in_m.h1,
                                    0.5 * static_cast<double>(in_m.n2) * in_m.h2};
   for (const double first : {0.5, 0.0}) {  // the first cell's centre, in cells
-    const std::array<double, 2> by{half[0] - (0.5 - first) * field.grid.h1,
-                                   half[1] - (0.5 - first) * field.grid.h2};
+    const std::array<double, 2> by{half[0] - (0.5 - first) * field.grid.h1, half[1] - (0.5 - first) * field.grid.h2};
     if (!(std::abs(found[0] - by[0] - expected[0]) <= 0.25 * field.grid.h1 &&
           std::abs(found[1] - by[1] - expected[1]) <= 0.25 * field.grid.h2))
       continue;
     for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= by[k];
-    read.conventions.push_back(fmt::format(
-        "positions count from the grid's corner: moved by ({:.4g}, {:.4g}) m to its middle", by[0], by[1]));
+    read.conventions.push_back(
+        fmt::format("positions count from the grid's corner: moved by ({:.4g}, {:.4g}) m to its middle", by[0], by[1]));
     return;
   }
 }
@@ -218,12 +211,11 @@ void correct_origin(Interpretation& read, const solver::Scene& scene, const solv
   ForeignField moved = field;
   for (std::size_t k = 0; k < 2; ++k) moved.centre[k] -= off[k];
   const bool known = exact.oracle && std::isfinite(exact.oracle->contact_radius);
-  if (known && !(distance_from(*exact.oracle, moved) < distance_from(*exact.oracle, field)))
-    return;  // rows are lost
+  if (known && !(distance_from(*exact.oracle, moved) < distance_from(*exact.oracle, field))) return;  // rows are lost
   field = std::move(moved);
   if (cells < 1.0) return;
-  read.conventions.push_back(fmt::format(
-      "the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
+  read.conventions.push_back(
+      fmt::format("the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
 }
 
 /// A way to write tractions: on the other body, in a left-handed frame, with exchanged columns, or by mistake
@@ -241,12 +233,10 @@ struct Orientation {
     if (mirrored) parts.emplace_back("x2 and q2 look reversed (a left-handed frame)");
     if (exchanged) parts.emplace_back("q1 and q2 look exchanged");
     if (is_mistake()) {
-      parts.push_back(
-          fmt::format("only {} looks reversed, as with the rotation field (x2, x1) instead of (-x2, x1)",
-                      sign1 < 0.0 ? "q1" : "q2"));
+      parts.push_back(fmt::format("only {} looks reversed, as with the rotation field (x2, x1) instead of (-x2, x1)",
+                                  sign1 < 0.0 ? "q1" : "q2"));
     } else if (sign1 < 0.0) {
-      parts.emplace_back(
-          "tractions look reversed (those on the other body, or a moment that turns the other way)");
+      parts.emplace_back("tractions look reversed (those on the other body, or a moment that turns the other way)");
     }
     return fmt::format("{}: only then do they carry the scene's loads", fmt::join(parts, ", and "));
   }
@@ -284,9 +274,8 @@ class LoadMismatch {
   double operator()(const ArrayXd& traction) const {
     const Index cells = traction.size() / 2;
     const double moment = (traction * rotation_).sum();
-    const double off =
-        moment_ ? std::abs(moment - *moment_) / limit_
-                : std::abs(moment / (solver::norms(traction) * solver::norms(rotation_)).sum() - sense_);
+    const double off = moment_ ? std::abs(moment - *moment_) / limit_
+                               : std::abs(moment / (solver::norms(traction) * solver::norms(rotation_)).sum() - sense_);
     if (load_.displacement) return off;
     return off + std::hypot(traction.head(cells).sum() / friction_ - force_[0],
                             traction.tail(cells).sum() / friction_ - force_[1]);
@@ -340,8 +329,7 @@ void correct_orientation(Interpretation& read, const solver::Scene& scene, const
 
 }  // namespace
 
-std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
-                                   double unit) {
+std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit, double unit) {
   const solver::TorsionLoad& torsion = scene.steps.front().torsion;
   if (exact.oracle && std::isfinite(exact.oracle->moment)) return exact.oracle->moment / unit;
   if (const auto moment = solver::value_if<solver::Moment>(torsion)) return *moment / unit;

@@ -132,24 +132,21 @@ std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver:
               .select(std::numeric_limits<double>::infinity(), gap);
   }
   const double total = *scene.steps.front().normal / contact.force_unit() / grid.cell_area();
-  return solver::solve_normal_contact(contact.elasticity, grid, {.gap = gap, .total_pressure = total})
-      .pressure;
+  return solver::solve_normal_contact(contact.elasticity, grid, {.gap = gap, .total_pressure = total}).pressure;
 }
 
 KnownMotion known_motion(const GivenContact& contact, const solver::Step& load, std::optional<double> twist) {
   KnownMotion motion{.twist = twist};
   const double unit = contact.length_unit;
-  if (load.displacement)
-    motion.displacement = {(*load.displacement)[0] / unit, (*load.displacement)[1] / unit};
+  if (load.displacement) motion.displacement = {(*load.displacement)[0] / unit, (*load.displacement)[1] / unit};
   return motion;
 }
 
 solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load) {
   solver::TangentialProblem problem{
       .friction_bound = contact.friction_bound,
-      .initial_displacement = contact.pressure_coupling
-                                  ? ArrayXd(contact.displacement - contact.elastic_displacement)
-                                  : ArrayXd(),
+      .initial_displacement =
+          contact.pressure_coupling ? ArrayXd(contact.displacement - contact.elastic_displacement) : ArrayXd(),
       .moment = {},
       .twist = solver::value_if<solver::Twist>(load.torsion)};
   if (!problem.twist) {
@@ -161,8 +158,7 @@ solver::TangentialProblem own_problem(const GivenContact& contact, const solver:
   const double twist = problem.twist.value_or(0.0);
   if (load.displacement && (problem.twist || (c1 == 0.0 && c2 == 0.0))) {
     const double unit = contact.length_unit;
-    problem.displacement = {(*load.displacement)[0] / unit - twist * c2,
-                            (*load.displacement)[1] / unit + twist * c1};
+    problem.displacement = {(*load.displacement)[0] / unit - twist * c2, (*load.displacement)[1] / unit + twist * c1};
   } else {
     problem.force = contact.force();
   }
@@ -196,8 +192,7 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid
                                          solver::TangentialProblem problem) {
   const ArrayXd& bound = problem.friction_bound;
   const bool mirrored = !problem.force && !problem.displacement && problem.initial_displacement.size() == 0;
-  const solver::Reduction part =
-      mirrored ? solver::Reduction(grid, bound, bound) : solver::Reduction(grid, bound);
+  const solver::Reduction part = mirrored ? solver::Reduction(grid, bound, bound) : solver::Reduction(grid, bound);
   solver::Elasticity elasticity = contact.elasticity;
   elasticity.diagonal = part.diagonal();
   solver::TangentialProblem own = reduced(problem, part);
@@ -234,8 +229,7 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
   return cells;
 }
 
-std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right,
-                                const Regions& regions) {
+std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right, const Regions& regions) {
   std::vector<Index> ring = slip_ring(contact, right);
   std::erase_if(ring, [&](Index cell) { return regions.ring[cell] == 0.0; });
   if (ring.size() < kMinSlipping) return {};
@@ -278,9 +272,8 @@ solver::SlipDirection noticeable_direction(const GivenContact& c, const State& s
 
 Deviation larger(const Deviation& a, const Deviation& b) {
   const auto of = [&](double Deviation::*part) { return std::max(std::abs(a.*part), std::abs(b.*part)); };
-  return {of(&Deviation::tractions), of(&Deviation::inside),   of(&Deviation::motion),
-          of(&Deviation::moment),    of(&Deviation::friction), of(&Deviation::excess),
-          of(&Deviation::gap),       of(&Deviation::pressure)};
+  return {of(&Deviation::tractions), of(&Deviation::inside), of(&Deviation::motion), of(&Deviation::moment),
+          of(&Deviation::friction),  of(&Deviation::excess), of(&Deviation::gap),    of(&Deviation::pressure)};
 }
 
 }  // namespace slipstick::convergence

@@ -18,8 +18,7 @@ inline constexpr double kIterationGap = 1e-5;
 /// from empty ones.
 inline constexpr double kNextToNothing = 1e-3;
 
-// ---------------------------------------------------------------- fields on other grids about the same
-// centre
+// ---------------------------------------------------------------- fields on other grids about the same centre
 
 /// The same bodies with another pressure and other tractions, without rounding.
 GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
@@ -115,8 +114,7 @@ Deviation larger(const Deviation& a, const Deviation& b);
 std::vector<solver::Index> slip_ring(const GivenContact& contact, const RightAnswer& right);
 
 /// |q|/(mu p) - 1 in the ring's judged cells, in ascending order; empty where fewer than kMinSlipping slip.
-std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right,
-                                const Regions& regions);
+std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right, const Regions& regions);
 inline constexpr std::size_t kMinSlipping = 8;  ///< a median over fewer cells would show the ring's edges
 
 }  // namespace slipstick::convergence

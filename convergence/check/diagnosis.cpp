@@ -126,11 +126,11 @@ class Trial {
 
   Hypothesis of(const Assumption& assumption, const ArrayXd& bound) const {
     const ArrayXd elastic =
-        elastic_ + pair_.poisson_compliance *
-                       ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
-                        assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
-    const solver::FittedMotion fitted = solver::fit_motion(
-        elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_, at_least(bound), motions_);
+        elastic_ +
+        pair_.poisson_compliance * ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
+                                    assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
+    const solver::FittedMotion fitted = solver::fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_,
+                                                           traction_, at_least(bound), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
     return {assumption.cause, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
             fitted.coefficients[fitted.coefficients.size() - 1]};
@@ -193,13 +193,12 @@ class Trial {
 };
 
 std::vector<Hypothesis> try_kernels(const Trial& trial) {
-  std::vector<Assumption> assumptions{
-      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
-      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
-      {.cause = {mistake::cross_kernel_missing}, .cross = 0.0},
-      {.cause = {mistake::cross_kernel_sign}, .cross = -1.0},
-      {.cause = {mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
-      {.cause = {mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
+  std::vector<Assumption> assumptions{{.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
+                                      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
+                                      {.cause = {mistake::cross_kernel_missing}, .cross = 0.0},
+                                      {.cause = {mistake::cross_kernel_sign}, .cross = -1.0},
+                                      {.cause = {mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
+                                      {.cause = {mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
   if (const auto times = trial.best_cross()) assumptions.push_back(*times);
   if (trial.coupled()) {
@@ -226,8 +225,7 @@ Highest highest_of(std::vector<double>& logs) {
   const auto top = logs.end() - 1 - static_cast<std::ptrdiff_t>(logs.size() / kTop);
   std::ranges::nth_element(logs, top);
   const double value = *top;
-  const auto cells =
-      std::ranges::count_if(logs, [&](double log) { return std::abs(log - value) <= kFollows; });
+  const auto cells = std::ranges::count_if(logs, [&](double log) { return std::abs(log - value) <= kFollows; });
   return {value, static_cast<std::size_t>(cells)};
 }
 
@@ -250,8 +248,7 @@ PowerShown power_shown(const GivenContact& c) {
   }
   std::vector<double> logs(cells.size());
   const auto highest_over = [&](const ArrayXd& unit) {
-    std::ranges::transform(cells, logs.begin(),
-                           [&](Index cell) { return std::log(size[cell] / unit[cell]); });
+    std::ranges::transform(cells, logs.begin(), [&](Index cell) { return std::log(size[cell] / unit[cell]); });
     return highest_of(logs);
   };
   const Highest own = highest_over(c.friction_bound);
@@ -297,11 +294,9 @@ std::optional<OtherFriction> other_law(const GivenContact& c) {
   } else if (is(1.0)) {
     cause = {mistake::coulomb_friction, shown.coefficient};
   }
-  cause.subject =
-      fmt::format("\"{}\"{}", solver::to_string(law.kind),
-                  law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : "");
-  return OtherFriction{cause,
-                       (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
+  cause.subject = fmt::format("\"{}\"{}", solver::to_string(law.kind),
+                              law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : "");
+  return OtherFriction{cause, (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
 }
 
 }  // namespace

@@ -27,8 +27,7 @@ inline constexpr std::string_view poisson_ratio = "Poisson's ratio is {0:.3g} in
 inline constexpr std::string_view coupling_missing = "the kernels K13 and K23 are missing";
 inline constexpr std::string_view coupling_sign = "the kernels K13 and K23 have the wrong sign";
 inline constexpr std::string_view coupling_factor = "the kernels K13 and K23 are multiplied by {0:.3g}";
-inline constexpr std::string_view friction_coefficient =
-    "the friction coefficient is {0:.4g} instead of {1:.4g}";
+inline constexpr std::string_view friction_coefficient = "the friction coefficient is {0:.4g} instead of {1:.4g}";
 inline constexpr std::string_view friction_factor = "the friction bound is multiplied by {0:.4g}";
 inline constexpr std::string_view tresca_friction =
     "the law of friction is Tresca's, with a shear strength of {0:.4g} Pa, instead of {2}";
@@ -37,10 +36,8 @@ inline constexpr std::string_view mean_friction =
     "instead of {2}";
 inline constexpr std::string_view coulomb_friction =
     "the law of friction is Coulomb's, with a coefficient of {0:.4g}, instead of {2}";
-inline constexpr std::string_view power_friction =
-    "the law of friction is |q| = k p^n with n = {0:.2f} instead of {2}";
-inline constexpr std::string_view kept_directions =
-    "slipping cells keep a direction that does not oppose their slip";
+inline constexpr std::string_view power_friction = "the law of friction is |q| = k p^n with n = {0:.2f} instead of {2}";
+inline constexpr std::string_view kept_directions = "slipping cells keep a direction that does not oppose their slip";
 inline constexpr std::string_view sampled_singularity =
     "a pressure with an infinite value is sampled at cell centres instead of averaged over cells";
 inline constexpr std::string_view lost_rows =
@@ -54,12 +51,10 @@ inline constexpr std::string_view compliance_factor = "the compliance of the pai
 inline constexpr std::string_view radius_factor = "the radius is multiplied by {0:.3g}";
 inline constexpr std::string_view modulus_factor = "the elastic moduli are multiplied by {0:.3g}";
 inline constexpr std::string_view layer_ignored = "the layer on the {2} body is ignored";
-inline constexpr std::string_view layer_exchanged =
-    "the constants of the {2} body and of its layer are exchanged";
+inline constexpr std::string_view layer_exchanged = "the constants of the {2} body and of its layer are exchanged";
 inline constexpr std::string_view layer_on_other_body = "the layer is on the other body";
 inline constexpr std::string_view layer_between_ignored = "the layer between the bodies is ignored";
-inline constexpr std::string_view layer_thickness =
-    "the layer on the {2} body is {0:.3g} m thick instead of {1:.4g} m";
+inline constexpr std::string_view layer_thickness = "the layer on the {2} body is {0:.3g} m thick instead of {1:.4g} m";
 inline constexpr std::string_view twist_in_degrees = "the twist is in degrees";
 inline constexpr std::string_view twist_in_mrad = "the twist is in mrad";
 inline constexpr std::string_view twist_sign = "the twist has the opposite sign";
@@ -128,8 +123,7 @@ Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double
 /// 1 in cells that stick, where |q| is below mu p by more than the file's rounding and a solver's tolerance.
 Eigen::ArrayXd stick_cells(const GivenContact& contact);
 
-/// Whether the tractions would be right, up to a part of them, if the slipping cells had the right
-/// directions.
+/// Whether the tractions would be right, up to a part of them, if the slipping cells had the right directions.
 bool directions_explain(const GivenContact& contact, const RightAnswer& answer, double allowed);
 
 /// Whether at most a part of the tractions exceeds a friction.

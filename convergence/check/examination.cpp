@@ -29,9 +29,8 @@ constexpr double kChildrenOfCell = static_cast<double>(kChildren * kChildren);
 constexpr double kMissedLoad = 1e-2;
 /// Standard deviation over |q| of the largest noise that a right field is allowed.
 constexpr double kLargestNoise = 3e-3;
-/// Random errors over what friction leaves sticking cells in the mean, by which they move no number that is
-/// judged. Files with all digits of a double have less, unless nearly all cells slip: then the motion follows
-/// them.
+/// Random errors over what friction leaves sticking cells in the mean, by which they move no number that is judged.
+/// Files with all digits of a double have less, unless nearly all cells slip: then the motion follows them.
 constexpr double kUnseen = 1e-14;
 /// Upper quartile of a normal distribution, in standard deviations.
 constexpr double kQuartile = 0.6745;
@@ -56,9 +55,8 @@ ArrayXd sampled(const Grid& coarse, const ArrayXd& values) {
   const auto centres = Eigen::seq(kChildren / 2, Eigen::last, kChildren);
   ArrayXd result(values.size() / (kChildren * kChildren));
   for (Index c = 0; c * fine.cells() < values.size(); ++c) {
-    result.segment(c * coarse.cells(), coarse.cells()) = values.segment(c * fine.cells(), fine.cells())
-                                                             .reshaped(fine.n2, fine.n1)(centres, centres)
-                                                             .reshaped();
+    result.segment(c * coarse.cells(), coarse.cells()) =
+        values.segment(c * fine.cells(), fine.cells()).reshaped(fine.n2, fine.n1)(centres, centres).reshaped();
   }
   return result;
 }
@@ -82,8 +80,8 @@ std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const GivenContact&
 }
 
 /// The right field under a pressure on the finer mesh, as near to the limit as the field's own loads are.
-solver::TangentialSolution solve_finer(const GivenContact& contact, const solver::Step& load,
-                                       const Grid& fine, ArrayXd pressure) {
+solver::TangentialSolution solve_finer(const GivenContact& contact, const solver::Step& load, const Grid& fine,
+                                       ArrayXd pressure) {
   solver::TangentialProblem problem = own_problem(contact, load);
   const double own = solver::limit_of(problem, contact.grid).factor;
   problem.friction_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
@@ -111,8 +109,7 @@ Sums sums_of(const Grid& grid, double total_pressure, const ArrayXd& traction) {
 LoadErrors load_errors(const Sums& coarse, const Sums& fine, double friction) {
   return {.normal = std::abs(coarse.normal / fine.normal - 1.0),
           .moment = fine.moment == 0.0 ? 0.0 : std::abs(coarse.moment / fine.moment - 1.0),
-          .force = std::hypot(coarse.force1 - fine.force1, coarse.force2 - fine.force2) /
-                   (friction * fine.normal)};
+          .force = std::hypot(coarse.force1 - fine.force1, coarse.force2 - fine.force2) / (friction * fine.normal)};
 }
 
 Grid field_grid_in_m(const GivenContact& contact, const Grid& grid) {
@@ -141,8 +138,8 @@ ArrayXd deviation_from(const ArrayXd& right, const ArrayXd& pressure) {
 /// The right pressure on a grid of fine cells: the exact one, otherwise the solved one if `solve` says so.
 /// None where neither is known.
 std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::Scene& scene,
-                                     const solver::Model& model, const std::optional<Oracle>& pressed,
-                                     const Grid& fine, bool solve) {
+                                     const solver::Model& model, const std::optional<Oracle>& pressed, const Grid& fine,
+                                     bool solve) {
   if (const auto& normal = scene.steps.front().normal; pressed && normal) {
     if (auto exact = exact_pressure(*pressed, contact, fine, *normal)) return exact;
   }
@@ -154,8 +151,7 @@ std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::
 /// Measures the errors of right fields on a contact's grid.
 class MeshMeasurement {
  public:
-  MeshMeasurement(const GivenContact& contact, const solver::Step& load, const Regions& regions,
-                  bool twist_reported)
+  MeshMeasurement(const GivenContact& contact, const solver::Step& load, const Regions& regions, bool twist_reported)
       : contact_(contact), load_(load), grid_(padded(contact.grid)), twist_reported_(twist_reported) {
     regions_.inner = resized(contact.grid, grid_, regions.inner);
     const bool all = (regions.ring > 0.0).all();
@@ -165,8 +161,7 @@ class MeshMeasurement {
 
   /// Right pressures of the wide grid, against the one solved on its cells.
   void add_pressures(const WidePressure& wide, const ArrayXd& fine) {
-    for (const ArrayXd& p :
-         {sampled(wide.grid, fine), solver::restrict_to(wide.grid, finer(wide.grid), fine)}) {
+    for (const ArrayXd& p : {sampled(wide.grid, fine), solver::restrict_to(wide.grid, finer(wide.grid), fine)}) {
       const ArrayXd off = deviation_from(wide.values, p);
       errors.deviation.pressure = std::max(errors.deviation.pressure, off.sum() / wide.values.sum());
       errors.pressures = errors.pressures.max(resized(wide.grid, contact_.grid, off));
@@ -189,8 +184,7 @@ class MeshMeasurement {
     errors.deviation = larger(errors.deviation, deviation);
     errors.tractions =
         errors.tractions.max(resized(grid_, contact_.grid, solver::norms(field.traction - right.traction)));
-    errors.direction =
-        std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
+    errors.direction = std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   }
 
   /// The exact answer shows an error that no finer mesh shows: its slip ring may be narrower than a cell.
@@ -201,8 +195,8 @@ class MeshMeasurement {
     if (!(std::abs(carried / normal - 1.0) <= kMissedLoad) || !fields.traction.allFinite()) return;
     const bool torsion = exact.force == std::array<double, 2>{};
     add_field(fields.pressure / contact_.stress_unit, fields.traction / contact_.stress_unit,
-              {normal, torsion ? exact.moment / contact_.moment_unit() : 0.0,
-               exact.force[0] / contact_.force_unit(), exact.force[1] / contact_.force_unit()},
+              {normal, torsion ? exact.moment / contact_.moment_unit() : 0.0, exact.force[0] / contact_.force_unit(),
+               exact.force[1] / contact_.force_unit()},
               exact.twist_angle);
   }
 
@@ -300,8 +294,7 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
   for (Index k = 0; k < error.size(); ++k) error[k] = normal(random) * size[k % size.size()];
   Deviation worst;
   for (const double sign : {1.0, -1.0}) {
-    const GivenContact field =
-        with_fields(contact, contact.grid, contact.pressure, right.traction + sign * error);
+    const GivenContact field = with_fields(contact, contact.grid, contact.pressure, right.traction + sign * error);
     const State fitted = find_state(field, known_motion(field, load, std::nullopt));
     worst = larger(worst, find_deviation(field, right, fitted, fitted, regions));
   }
@@ -319,8 +312,7 @@ ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver
           .right = right,
           .regions = regions,
           .mesh = measure_mesh(contact, scene, model, regions, known, wide),
-          .rounding =
-              disturbed(contact, right, regions, load, contact.traction_rounding + contact.bound_rounding),
+          .rounding = disturbed(contact, right, regions, load, contact.traction_rounding + contact.bound_rounding),
           .noise = disturbed(contact, right, regions, load, noise),
           .noise_size = noise};
 }
@@ -328,8 +320,7 @@ ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver
 void require_judgeable(const solver::Scene& scene) {
   const std::string file = scene.source.string();
   if (scene.steps.size() > 1 || scene.cycles > 1) {
-    throw InputError(file, "step",
-                     fmt::format("{} steps", scene.steps.size() * static_cast<std::size_t>(scene.cycles)),
+    throw InputError(file, "step", fmt::format("{} steps", scene.steps.size() * static_cast<std::size_t>(scene.cycles)),
                      "a scene of one load: a field does not show the steps before");
   }
   if (scene.contact.friction.is_frictionless()) {
@@ -383,12 +374,9 @@ std::optional<ScenePressure> find_scene_pressure(const GivenContact& contact, co
   return wide ? std::optional(on_field(contact, *wide)) : std::nullopt;
 }
 
-double Examination::moment_limit() const {
-  return solver::free_moment_limit(contact.grid, contact.friction_bound);
-}
+double Examination::moment_limit() const { return solver::free_moment_limit(contact.grid, contact.friction_bound); }
 
-Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    const CheckOptions& options) {
+Examination examine(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
   require_judgeable(scene);
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
@@ -405,31 +393,30 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
     read.conventions.emplace_back("the twist that was given counts the other way round");
   }
   const OracleAnswer pressed = about(exact_normal_contact(scene), read.field.centre);
-  const ReferenceOnGrid reference =
-      find_reference_on_grid(contact, scene, model,
-                             {pressed.oracle, about(exact, read.field.centre).oracle,
-                              options.twist.has_value(), options.pressure_given});
+  const ReferenceOnGrid reference = find_reference_on_grid(
+      contact, scene, model,
+      {pressed.oracle, about(exact, read.field.centre).oracle, options.twist.has_value(), options.pressure_given});
   const State state = twist ? find_state(contact, known_motion(contact, load, twist)) : fitted;
   const double limit = solver::free_moment_limit(contact.grid, contact.friction_bound);
   const auto moment = std::holds_alternative<solver::Twist>(load.torsion)
                           ? std::nullopt
                           : known_moment(scene, exact, limit, contact.newton_metres());
-  return {.scene = scene,
-          .read = read,
-          .exact = about(exact, read.field.centre),
-          .contact = contact,
-          .reference = reference,
-          .constant_cells = reference.pressure &&
-                            reference.pressure->off <= kConstantCells * reference.mesh.deviation.pressure,
-          .pressure_given = options.pressure_given,
-          .twist_given = twist.has_value(),
-          .state = state,
-          .fitted = fitted,
-          .deviation = find_deviation(contact, reference.right, options.twist ? state : fitted, fitted,
-                                      reference.regions),
-          .moment = moment,
-          .certificate = certify_field(contact, load, state, moment),
-          .direction = noticeable_direction(contact, fitted, reference.mesh.deviation.tractions)};
+  return {
+      .scene = scene,
+      .read = read,
+      .exact = about(exact, read.field.centre),
+      .contact = contact,
+      .reference = reference,
+      .constant_cells =
+          reference.pressure && reference.pressure->off <= kConstantCells * reference.mesh.deviation.pressure,
+      .pressure_given = options.pressure_given,
+      .twist_given = twist.has_value(),
+      .state = state,
+      .fitted = fitted,
+      .deviation = find_deviation(contact, reference.right, options.twist ? state : fitted, fitted, reference.regions),
+      .moment = moment,
+      .certificate = certify_field(contact, load, state, moment),
+      .direction = noticeable_direction(contact, fitted, reference.mesh.deviation.tractions)};
 }
 
 }  // namespace slipstick::convergence

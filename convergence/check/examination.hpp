@@ -95,11 +95,9 @@ struct Examination {
 ///
 /// Throws InputError for a history, for a scene without friction, and where read_foreign_field() or
 /// in_own_conventions() does; std::runtime_error where the reference's solve does not converge.
-Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    const CheckOptions& options);
+Examination examine(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options);
 
-/// The pressure of a scene, of the contact's bodies, on the contact's cells. None where it cannot be solved
-/// on these.
+/// The pressure of a scene, of the contact's bodies, on the contact's cells. None where it cannot be solved on these.
 std::optional<ScenePressure> find_scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                                  const solver::Model& model);
 

@@ -42,8 +42,7 @@ constexpr double kStepsAway = 10.0;
 constexpr double kOffCentre = 1e-2;
 /// up to this part of the cell, within which positions still distinguish cells.
 constexpr double kDistinguishesCells = 0.25;
-/// Part of a cell that the sums which fit a grid leave: squares are squares, and an axis is a mirror, without
-/// it.
+/// Part of a cell that the sums which fit a grid leave: squares are squares, and an axis is a mirror, without it.
 constexpr double kGridRounding = 1e-9;
 
 /// Equally spaced places along one axis.
@@ -165,19 +164,17 @@ void require_judgeable(const std::filesystem::path& file, const solver::Column& 
   if (cells > allowed) {
     throw InputError(
         file.string(),
-        fmt::format(
-            "{} rows on a grid of {} x {} cells of {:.4g} x {:.4g}; allowed: one row for each cell of the "
-            "contact, on one regular grid of at most {:.0f} cells",
-            rows, axis1.count, axis2.count, axis1.spacing, axis2.spacing, allowed));
+        fmt::format("{} rows on a grid of {} x {} cells of {:.4g} x {:.4g}; allowed: one row for each cell of the "
+                    "contact, on one regular grid of at most {:.0f} cells",
+                    rows, axis1.count, axis2.count, axis1.spacing, axis2.spacing, allowed));
   }
   const double slender = axis1.spacing / axis2.spacing;
   if (!(slender <= kMaxSlender && slender >= 1.0 / kMaxSlender)) {
     throw InputError(
         file.string(),
-        fmt::format(
-            "row 1: ({}, {}) and those below are cells of {:.4g} x {:.4g}; allowed: one unit of length "
-            "in both columns, and cells at most {} times as long as wide",
-            x1.values[0], x2.values[0], axis1.spacing, axis2.spacing, kMaxSlender));
+        fmt::format("row 1: ({}, {}) and those below are cells of {:.4g} x {:.4g}; allowed: one unit of length "
+                    "in both columns, and cells at most {} times as long as wide",
+                    x1.values[0], x2.values[0], axis1.spacing, axis2.spacing, kMaxSlender));
   }
 }
 
@@ -190,10 +187,9 @@ void read_missing_as_no_contact(const std::filesystem::path& file, std::vector<s
       double& value = columns[c].values[row];
       if (!std::isnan(value)) continue;
       if (c < 2 || !no_contact) {
-        throw InputError(file.string(),
-                         fmt::format("row {}: {} is no number; allowed: NaN where there is no contact, "
-                                     "in pressure, q1 and q2",
-                                     row + 1, columns[c].name));
+        throw InputError(file.string(), fmt::format("row {}: {} is no number; allowed: NaN where there is no contact, "
+                                                    "in pressure, q1 and q2",
+                                                    row + 1, columns[c].name));
       }
       value = 0.0;
     }
@@ -217,8 +213,7 @@ bool lies_on_grid(const solver::Column& x1, const solver::Column& x2) {
   return cells <= std::max(kQuickGridCells, kMaxCellsPerRow * static_cast<double>(x1.values.size()));
 }
 
-FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
-                          const solver::Column& x2) {
+FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1, const solver::Column& x2) {
   const Axis axis1 = find_axis(file, x1);
   const Axis axis2 = find_axis(file, x2);
   require_judgeable(file, x1, axis1, x2, axis2);
@@ -231,10 +226,9 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
         std::lround(axis1.place(x1.values[row])) * axis2.count + std::lround(axis2.place(x2.values[row]));
     Index& before = row_of[static_cast<std::size_t>(cell)];
     if (before >= 0) {
-      throw InputError(file.string(),
-                       fmt::format("row {}: ({}, {}) is the cell of row {} again; allowed: one row "
-                                   "a cell",
-                                   row + 1, x1.values[row], x2.values[row], before + 1));
+      throw InputError(file.string(), fmt::format("row {}: ({}, {}) is the cell of row {} again; allowed: one row "
+                                                  "a cell",
+                                                  row + 1, x1.values[row], x2.values[row], before + 1));
     }
     before = row;
     found.cells.push_back(cell);
@@ -243,8 +237,8 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
 }
 
 ForeignField read_foreign_field(const std::filesystem::path& file, const std::vector<std::string>& names) {
-  auto columns = solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"},
-                                      {.columns = names, .may_be_missing = true});
+  auto columns =
+      solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"}, {.columns = names, .may_be_missing = true});
   read_missing_as_no_contact(file, columns);
   const FieldGrid found = find_field_grid(file, columns[0], columns[1]);
   const ArrayXd& pressure = columns[2].values;
@@ -261,8 +255,8 @@ ForeignField read_foreign_field(const std::filesystem::path& file, const std::ve
                      .traction_rounding = ArrayXd::Zero(cells)};
   for (Index row = 0; row < pressure.size(); ++row) {
     if (!(pressure[row] >= 0.0)) {
-      throw InputError(file.string(), fmt::format("row {}: pressure = {}; allowed: zero or positive", row + 1,
-                                                  pressure[row]));
+      throw InputError(file.string(),
+                       fmt::format("row {}: pressure = {}; allowed: zero or positive", row + 1, pressure[row]));
     }
     const Index cell = found.cells[static_cast<std::size_t>(row)];
     field.pressure[cell] = pressure[row];
@@ -290,8 +284,7 @@ GivenContact pose(const ForeignField& field, const solver::Dimensionless& bodies
   contact.bound_rounding =
       here.friction.is_coulomb()
           ? ArrayXd(here.friction.coefficient * rounding)
-          : ArrayXd(
-                (p > 0.0).select(here.friction.bound(ArrayXd(p + rounding)) - contact.friction_bound, 0.0));
+          : ArrayXd((p > 0.0).select(here.friction.bound(ArrayXd(p + rounding)) - contact.friction_bound, 0.0));
   contact.traction_rounding = field.traction_rounding / stress;
   return contact;
 }

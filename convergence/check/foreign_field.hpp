@@ -25,8 +25,7 @@ struct FieldGrid {
 /// x1, x2: positions of the cells' centres, in any order; their digits have to distinguish them. Cells may be
 /// missing. Throws InputError, with file, row and value, for positions on no regular grid, a cell that is
 /// given twice, and too few cells to judge.
-FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
-                          const solver::Column& x2);
+FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1, const solver::Column& x2);
 
 /// Whether positions are those of a regular grid, up to a few mistakes that find_field_grid() names, and not
 /// those of a mesh.
@@ -48,14 +47,12 @@ struct ForeignField {
 /// others are ignored). No unit is converted. There is no contact where the pressure is NaN, or where it is
 /// zero and a traction is NaN. Throws InputError for a column that is missing, another value that is not
 /// finite, a negative pressure, tractions that are all zero, and where find_field_grid() does.
-ForeignField read_foreign_field(const std::filesystem::path& file,
-                                const std::vector<std::string>& columns = {});
+ForeignField read_foreign_field(const std::filesystem::path& file, const std::vector<std::string>& columns = {});
 
 /// The scene's bodies with the field's pressure and tractions, on the field's grid. bodies: on any grid.
 GivenContact pose(const ForeignField& field, const solver::Dimensionless& bodies, int threads);
 
-// ---------------------------------------------------------------- in the scene's units and signs
-// (conventions.cpp)
+// ---------------------------------------------------------------- in the scene's units and signs (conventions.cpp)
 
 /// A field in this project's conventions.
 struct Interpretation {
@@ -79,7 +76,6 @@ Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene
 
 /// A scene's moment over `unit`, from the exact answer or the scene's load. limit: the limit moment of the
 /// pressure, over the same unit. None under an imposed twist without an exact answer.
-std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
-                                   double unit);
+std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit, double unit);
 
 }  // namespace slipstick::convergence

@@ -30,8 +30,7 @@ const std::vector<std::string> kLoadNames{"normal_load", "normal_force"};
 /// Rows of a loop: fewer do not show its noise.
 constexpr std::size_t kMinLoopRows = 20;
 
-/// Moment and rotation, or tangential force and displacement, row by row in the units of the program that
-/// wrote them.
+/// Moment and rotation, or tangential force and displacement, row by row in the units of the program that wrote them.
 struct LoopRecord {
   std::filesystem::path file;
   bool of_force;
@@ -70,22 +69,20 @@ std::vector<double> csv_column(const std::filesystem::path& file, const std::str
 std::vector<double> json_list(const std::filesystem::path& file, const Json& json, const std::string& name) {
   std::vector<double> values;
   const Json& list = json[name];
-  const bool are_numbers =
-      list.is_array() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
+  const bool are_numbers = list.is_array() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
   if (!are_numbers) throw InputError(file.string(), name, "...", "a list of numbers");
   for (const Json& value : list) values.push_back(value.get<double>());
   return values;
 }
 
 template <class Column>
-LoopRecord collect(const std::filesystem::path& file, const std::vector<std::string>& there,
-                   const Column& column) {
+LoopRecord collect(const std::filesystem::path& file, const std::vector<std::string>& there, const Column& column) {
   const auto required = [&](const std::vector<std::string>& names) {
     const std::string name = present(there, names);
     if (name.empty()) {
-      throw InputError(file.string(), fmt::format("has no {}; allowed names: {}; it has: {}", names.front(),
-                                                  fmt::join(names, ", "),
-                                                  solver::shown(fmt::format("{}", fmt::join(there, ", ")))));
+      throw InputError(file.string(),
+                       fmt::format("has no {}; allowed names: {}; it has: {}", names.front(), fmt::join(names, ", "),
+                                   solver::shown(fmt::format("{}", fmt::join(there, ", ")))));
     }
     return column(name);
   };
@@ -116,24 +113,23 @@ void require_sound(const LoopRecord& loop) {
   const std::size_t rows = loop.load.size();
   for (const std::vector<double>* column : {&loop.motion, &loop.time, &loop.normal_load}) {
     if (!column->empty() && column->size() != rows) {
-      throw InputError(
-          file, fmt::format("its lists have {} and {} values; allowed: equally many", rows, column->size()));
+      throw InputError(file,
+                       fmt::format("its lists have {} and {} values; allowed: equally many", rows, column->size()));
     }
   }
   if (rows < kMinLoopRows) {
-    throw InputError(file,
-                     fmt::format("{} rows are too few for a loop; allowed: at least {}", rows, kMinLoopRows));
+    throw InputError(file, fmt::format("{} rows are too few for a loop; allowed: at least {}", rows, kMinLoopRows));
   }
   for (std::size_t row = 1; row < loop.time.size(); ++row) {
     if (!(loop.time[row] > loop.time[row - 1])) {
-      throw InputError(file, fmt::format("row {}: time = {}; allowed: later than the row before", row + 1,
-                                         loop.time[row]));
+      throw InputError(file,
+                       fmt::format("row {}: time = {}; allowed: later than the row before", row + 1, loop.time[row]));
     }
   }
   for (std::size_t row = 0; row < loop.normal_load.size(); ++row) {
     if (!(loop.normal_load[row] > 0.0)) {
-      throw InputError(file, fmt::format("row {}: normal_load = {}; allowed: larger than zero", row + 1,
-                                         loop.normal_load[row]));
+      throw InputError(
+          file, fmt::format("row {}: normal_load = {}; allowed: larger than zero", row + 1, loop.normal_load[row]));
     }
   }
   const auto is_constant = [](const std::vector<double>& values) {
@@ -178,10 +174,9 @@ std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
     if (group.to - group.from >= kMinLoopRows) continue;
     throw InputError(
         loop.file.string(),
-        fmt::format(
-            "rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
-            "load of its own for at least {} rows",
-            group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
+        fmt::format("rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
+                    "load of its own for at least {} rows",
+                    group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
   }
   return groups;
 }
@@ -225,9 +220,7 @@ Json contact_json(const solver::Scene& scene, double normal_load, bool of_force)
             {"one_body", {pair / compliance(scene.upper), pair / compliance(scene.lower)}}};
   if (of_force) {
     const double limit = units.friction * normal_load;
-    json.update({{"limit", limit},
-                 {"motion_unit", limit * pair / units.contact_radius},
-                 {"gap", gap_exponent(scene)}});
+    json.update({{"limit", limit}, {"motion_unit", limit * pair / units.contact_radius}, {"gap", gap_exponent(scene)}});
     return json;
   }
   json.update({{"limit", contact.profile->moment_limit() * units.moment()},
@@ -241,8 +234,7 @@ Json contact_json(const solver::Scene& scene, double normal_load, bool of_force)
 bool is_loop_file(const std::filesystem::path& file) {
   if (file.extension() == ".json") return true;
   const std::vector<std::string> text{".csv", ".txt", ".dat", ".tsv"};
-  if (present({file.extension().string()}, text).empty() || !std::filesystem::is_regular_file(file))
-    return false;
+  if (present({file.extension().string()}, text).empty() || !std::filesystem::is_regular_file(file)) return false;
   const std::vector<std::string> names = solver::text_table_names(file);
   const bool is_field = !present(names, {"x1"}).empty();
   const bool of_torsion = !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();

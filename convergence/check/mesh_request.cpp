@@ -97,17 +97,15 @@ Json friction_json(const solver::FrictionLaw& law) {
 
 }  // namespace
 
-bool MeshOptions::any() const {
-  return stick_slope || normal_stiffness || !held_at.empty() || !read_as.empty();
-}
+bool MeshOptions::any() const { return stick_slope || normal_stiffness || !held_at.empty() || !read_as.empty(); }
 
 bool is_mesh_file(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   for (const char* regular : {".h5", ".hdf5", ".vti", ".npz", ".npy", ".json"}) {
     if (ending == regular) return false;
   }
-  for (const char* mesh : {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med",
-                           ".msh", ".inp", ".contact"}) {
+  for (const char* mesh :
+       {".vtu", ".vtk", ".vtp", ".frd", ".xdmf", ".xmf", ".e", ".exo", ".ex2", ".med", ".msh", ".inp", ".contact"}) {
     if (ending == mesh) return true;
   }
   const std::vector<std::string> names = solver::text_table_names(file);
@@ -122,8 +120,7 @@ Json mesh_request(const solver::Scene& scene, const std::vector<std::string>& ov
                   const std::filesystem::path& file, const MeshOptions& options) {
   const solver::FrictionLaw& law = scene.contact.friction;
   if (law.is_frictionless() || !law.map.empty()) {
-    throw solver::InputError(scene.source.string(), "contact.friction",
-                             law.map.empty() ? "0" : law.map.string(),
+    throw solver::InputError(scene.source.string(), "contact.friction", law.map.empty() ? "0" : law.map.string(),
                              "a coefficient above zero without a map, for a field on a mesh");
   }
   const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };

@@ -18,8 +18,7 @@ struct MeshOptions {
   std::optional<double> stick_slope = {};       ///< Pa/m, of the tangential penalty
   std::optional<double> normal_stiffness = {};  ///< Pa/m, of the normal penalty
   std::vector<double> held_at = {};  ///< radius in m at which the bodies are held, and a factor of its effect
-  /// Choices of the reader, each "key=value": kind, units, body, axis, basis, centre, or the name of an
-  /// array.
+  /// Choices of the reader, each "key=value": kind, units, body, axis, basis, centre, or the name of an array.
   std::vector<std::string> read_as = {};
 
   /// Whether one of the options that only a field on a mesh has is given.

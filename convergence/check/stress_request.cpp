@@ -97,9 +97,8 @@ RightStresses solved_stresses(const solver::Scene& scene, solver::Body body, con
     throw std::runtime_error("the right stresses to judge by were not found: " + solution->message);
   };
   const auto of = [body](const std::shared_ptr<const solver::Solution>& solution) {
-    return [=](const std::vector<Point>& points, double poisson) {
-      return stresses_at(*solution, poisson, body, points);
-    };
+    return
+        [=](const std::vector<Point>& points, double poisson) { return stresses_at(*solution, poisson, body, points); };
   };
   solver::Scene coarse = scene;
   for (solver::Index& cells : coarse.grid.cells) cells = (cells + 1) / 2;
@@ -115,8 +114,7 @@ RightStresses solved_stresses(const solver::Scene& scene, solver::Body body, con
   solver::Scene fine = scene;
   if (depends_on_path(scene, rough->coupled)) fine.solver.substeps *= 2;
   const auto solution = solved(fine);
-  return {solution->contact_radius, of(solution), of(rough), static_cast<double>(solution->contact_cells),
-          reason};
+  return {solution->contact_radius, of(solution), of(rough), static_cast<double>(solution->contact_cells), reason};
 }
 
 solver::Body read_body(const solver::Scene& scene, const std::vector<std::string>& read_as) {
@@ -151,8 +149,8 @@ bool is_stress_file(const std::filesystem::path& file, const std::vector<std::st
   return has("x3") && std::ranges::any_of(kComponents, has);
 }
 
-Json stress_request(const solver::Scene& scene, const std::filesystem::path& file,
-                    const CheckOptions& options, const std::vector<std::string>& read_as) {
+Json stress_request(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options,
+                    const std::vector<std::string>& read_as) {
   if (!solver::is_bare(scene))
     throw InputError(scene.source.string(),
                      "has a layer; allowed for stresses: half-spaces without a layer between or on them");
@@ -184,8 +182,7 @@ Json stress_request(const solver::Scene& scene, const std::filesystem::path& fil
   try {
     json["right"] = {both_parts(right.at(given.points, 0.0)), both_parts(right.at(given.points, 0.5))};
     if (right.coarse)
-      json["coarse"] = {both_parts(right.coarse(given.points, 0.0)),
-                        both_parts(right.coarse(given.points, 0.5))};
+      json["coarse"] = {both_parts(right.coarse(given.points, 0.0)), both_parts(right.coarse(given.points, 0.5))};
   } catch (const std::domain_error& error) {
     throw InputError(file.string(), fmt::format("a point has no stresses to compare with: {}", error.what()));
   }

@@ -21,9 +21,8 @@ bool is_stress_file(const std::filesystem::path& file, const std::vector<std::st
 /// pressure and by the shear tractions, for Poisson's ratio 0 and for 1/2, in which both are linear. Throws
 /// InputError for a file that cannot be read, points above the surface or where a stress is infinite, a scene
 /// with a layer, and sums that are too long. Of the options columns, strict and tolerance hold; the latter,
-/// 0.01 if it is not given, is of a component over the largest von Mises stress. read_as: body=lower or
-/// body=upper.
-Json stress_request(const solver::Scene& scene, const std::filesystem::path& file,
-                    const CheckOptions& options, const std::vector<std::string>& read_as);
+/// 0.01 if it is not given, is of a component over the largest von Mises stress. read_as: body=lower or body=upper.
+Json stress_request(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options,
+                    const std::vector<std::string>& read_as);
 
 }  // namespace slipstick::convergence

@@ -25,9 +25,8 @@ constexpr double kOtherDraws = 2.0;
 /// square root misses up to 4/pi^2 h^2/a^2 at the contact's edge (Poisson's summation, nearest images), about
 /// 1/n with the stick area's edge; two such sums are compared.
 constexpr double kQuadrature = 2.0;
-/// The same of a bound that ends in a step, times n^(3/4): twice the spread of a sum over the cells whose
-/// centres lie in a circle, 0.7 of the root of the radius in cells for 1 (Kendall 1948), and 3/2 of that for
-/// r.
+/// The same of a bound that ends in a step, times n^(3/4): twice the spread of a sum over the cells whose centres lie
+/// in a circle, 0.7 of the root of the radius in cells for 1 (Kendall 1948), and 3/2 of that for r.
 constexpr double kEndsInStep = 1.5;
 /// Degrees between slip and traction that change no result noticeably.
 constexpr double kUnseenAngle = 0.1;
@@ -64,8 +63,8 @@ ArrayXd of_neighbours(const solver::Grid& grid, const ArrayXd& values, const Tak
 
 /// The error that each cell may have. The mesh error that right fields show may stand one cell further on;
 /// and a cell may be off where half of its neighbours are, since the mean judges those.
-ArrayXd allowed_in_cells(const solver::Grid& grid, double scale, const ArrayXd& deviation,
-                         const ArrayXd& mesh, const ArrayXd& chance) {
+ArrayXd allowed_in_cells(const solver::Grid& grid, double scale, const ArrayXd& deviation, const ArrayXd& mesh,
+                         const ArrayXd& chance) {
   const auto largest = [](const std::vector<double>& around) { return around.back(); };
   const auto median = [](const std::vector<double>& around) { return around[around.size() / 2]; };
   return kCellTolerance * scale + chance +
@@ -75,8 +74,7 @@ ArrayXd allowed_in_cells(const solver::Grid& grid, double scale, const ArrayXd& 
 /// Relative error of sums over the contact by rounding and noise.
 double error_of_sums(const Examination& e) {
   const GivenContact& c = e.contact;
-  return c.traction_rounding.sum() / solver::norms(c.traction).sum() +
-         c.bound_rounding.sum() / c.friction_bound.sum() +
+  return c.traction_rounding.sum() / solver::norms(c.traction).sum() + c.bound_rounding.sum() / c.friction_bound.sum() +
          kLargestDraw * std::sqrt(e.reference.noise_size.square().sum()) / c.friction_bound.sum();
 }
 
@@ -112,11 +110,10 @@ Allowed allowed_anyway(const Examination& e) {
   return allowed;
 }
 
-/// Whether |q| <= mu p, up to the file's digits and a solver's tolerance. Otherwise Coulomb's gap is
-/// undefined.
+/// Whether |q| <= mu p, up to the file's digits and a solver's tolerance. Otherwise Coulomb's gap is undefined.
 bool keeps_friction_bound(const GivenContact& c) {
-  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + solver::kOnCircle) * c.friction_bound -
-                         c.traction_rounding - c.bound_rounding;
+  const ArrayXd beyond =
+      solver::norms(c.traction) - (1.0 + solver::kOnCircle) * c.friction_bound - c.traction_rounding - c.bound_rounding;
   return beyond.maxCoeff() <= kNextToNothing * solver::kOnCircle * c.friction_bound.maxCoeff();
 }
 
@@ -132,17 +129,14 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
     allowed.gap = allowed.discrete_gap + gap_of_tolerance(e, *tolerance);
     return allowed;
   }
-  const auto by_chance = [&](double Deviation::*part) {
-    return kOtherDraws * (y.noise.*part + y.rounding.*part);
-  };
+  const auto by_chance = [&](double Deviation::*part) { return kOtherDraws * (y.noise.*part + y.rounding.*part); };
   const auto cells = static_cast<double>((e.contact.pressure > 0.0).count());
   const bool step = e.scene.contact.friction.kind == solver::FrictionKind::tresca;
   const double quadrature = kQuadrature / cells;
   const double of_moment = step ? kEndsInStep * std::pow(cells, -0.75) : quadrature;
   const double sums = error_of_sums(e);
   // A program that solves this grid's problem knows its own sums and its own twist.
-  const bool discrete =
-      e.constant_cells && keeps_friction_bound(e.contact) && e.deviation.gap <= allowed.discrete_gap;
+  const bool discrete = e.constant_cells && keeps_friction_bound(e.contact) && e.deviation.gap <= allowed.discrete_gap;
   // Constant cells leave the motion open only as far as the iteration leaves the tractions open.
   const double off = e.deviation.tractions / y.mesh.deviation.tractions;
   const double unfinished = discrete ? 0.0 : e.constant_cells ? std::min(1.0, off) : 1.0;
@@ -157,12 +151,10 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   allowed.pressure =
       kNormalTolerance + kWholeMesh * y.mesh.deviation.pressure +
       kOtherDraws * (e.contact.bound_rounding.sum() + y.noise_size.sum()) / e.contact.friction_bound.sum();
-  allowed.motion =
-      unfinished * kWholeMesh * y.mesh.deviation.motion + quadrature + by_chance(&Deviation::motion);
+  allowed.motion = unfinished * kWholeMesh * y.mesh.deviation.motion + quadrature + by_chance(&Deviation::motion);
   allowed.tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
   allowed.inside = kWholeMesh * y.mesh.deviation.inside + by_chance(&Deviation::inside);
-  allowed.friction =
-      kFrictionDigits + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction);
+  allowed.friction = kFrictionDigits + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction);
   allowed.friction_bound =
       std::max(kFrictionDigits, kWholeMesh * y.mesh.deviation.excess + by_chance(&Deviation::excess));
   allowed.direction =
@@ -177,8 +169,8 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
 /// less than kNextToNothing is judged by a part of the largest mu p.
 double friction_excess(const Examination& e) {
   const GivenContact& c = e.contact;
-  const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding -
-                         c.bound_rounding - kLargestDraw * e.reference.noise_size;
+  const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding - c.bound_rounding -
+                         kLargestDraw * e.reference.noise_size;
   return (beyond / c.friction_bound.max(kNextToNothing * c.friction_bound.maxCoeff())).maxCoeff();
 }
 
@@ -191,12 +183,9 @@ std::string percent(double part) {
 std::string allowed_text(double allowed) { return fmt::format(" (allowed: {})", percent(allowed)); }
 
 Judged judge_error(const std::string& what, const std::string& key, double error, double allowed) {
-  return {key,
-          std::abs(error),
-          allowed,
-          "",
-          fmt::format("{} is {}{}", what, off_text(error), allowed_text(allowed)),
-          error < 0.0};
+  return {
+      key,        std::abs(error), allowed, "", fmt::format("{} is {}{}", what, off_text(error), allowed_text(allowed)),
+      error < 0.0};
 }
 
 /// A cell's centre in the scene's coordinates, in m.
@@ -239,26 +228,23 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, const All
   const GivenContact& c = e.contact;
   if (load.normal) {
     judged.push_back(judge_error("the normal load", "normal_load_error",
-                                 relative_error(c.pressure.sum() * c.newtons(), *load.normal),
-                                 allowed.normal));
+                                 relative_error(c.pressure.sum() * c.newtons(), *load.normal), allowed.normal));
   }
   if (e.pressure_given) return;
   if (e.exact.oracle && std::isfinite(e.exact.oracle->contact_radius)) {
     const double radius = e.exact.oracle->contact_radius / c.length_unit;
-    const double one_cell =
-        std::max(c.grid.h1, c.grid.h2) * c.length_unit / e.exact.oracle->shorter_semi_axis();
+    const double one_cell = std::max(c.grid.h1, c.grid.h2) * c.length_unit / e.exact.oracle->shorter_semi_axis();
     judged.push_back(judge_error("the contact radius", "contact_radius_error",
                                  relative_error(measure_contact_radius(c, c.pressure), radius), one_cell));
   }
   if (!e.reference.pressure) return;
   const ScenePressure& right = *e.reference.pressure;
-  judge_field(
-      judged,
-      {"pressure", right.off, allowed.pressure, "",
-       fmt::format("the contact has another shape: its pressure is {} off in the mean{}{}",
-                   percent(right.off), most_text(c, right.deviation), allowed_text(allowed.pressure))},
-      {judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
-                   allowed.pressure_cells)});
+  judge_field(judged,
+              {"pressure", right.off, allowed.pressure, "",
+               fmt::format("the contact has another shape: its pressure is {} off in the mean{}{}", percent(right.off),
+                           most_text(c, right.deviation), allowed_text(allowed.pressure))},
+              {judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
+                           allowed.pressure_cells)});
 }
 
 void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
@@ -301,9 +287,9 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
 void judge_friction(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   const solver::FrictionKind kind = e.scene.contact.friction.kind;
   const std::string law = solver::law_text(kind);
-  judged.push_back(judge_error(e.scene.contact.friction.is_coulomb() ? "|q|/p in the slip ring"
-                                                                     : "|q| over its bound in the slip ring",
-                               "friction", e.deviation.friction, allowed.friction));
+  judged.push_back(judge_error(
+      e.scene.contact.friction.is_coulomb() ? "|q|/p in the slip ring" : "|q| over its bound in the slip ring",
+      "friction", e.deviation.friction, allowed.friction));
   const double excess = friction_excess(e);
   judged.push_back({"friction_bound", excess, allowed.friction_bound, "",
                     fmt::format("|q| exceeds {} by {}{}", solver::bound_text(kind), percent(excess),
@@ -335,9 +321,7 @@ bool is_solved_with_other_kernel(const Examination& e, const Allowed& allowed) {
 
 }  // namespace
 
-std::string off_text(double error) {
-  return fmt::format("{} too {}", percent(error), error < 0.0 ? "low" : "high");
-}
+std::string off_text(double error) { return fmt::format("{} too {}", percent(error), error < 0.0 ? "low" : "high"); }
 
 std::string listed(const std::vector<std::string>& parts) {
   std::string text;
@@ -367,8 +351,7 @@ bool is_torsion(const solver::Scene& scene) { return !solver::brings_translation
 bool Verdict::within_mesh() const { return std::ranges::all_of(judged, &Judged::holds); }
 
 bool Verdict::holds(const std::string& quantity) const {
-  return std::ranges::all_of(judged,
-                             [&](const Judged& item) { return item.quantity != quantity || item.holds(); });
+  return std::ranges::all_of(judged, [&](const Judged& item) { return item.quantity != quantity || item.holds(); });
 }
 
 Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {

@@ -69,11 +69,9 @@ RigidMotions rigid_motions(const GivenContact& contact, const KnownMotion& motio
 
 State find_state(const GivenContact& c, const KnownMotion& motion) {
   // Within the bound no gap is negative: the bound is raised to |q| where |q| exceeds it.
-  const ArrayXd bound =
-      c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
+  const ArrayXd bound = c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
   const RigidMotions motions = rigid_motions(c, motion);
-  solver::FittedMotion fitted =
-      solver::fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
+  solver::FittedMotion fitted = solver::fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
   const auto& found = fitted.coefficients;
   State state{.twist = motion.twist ? *motion.twist : found[found.size() - 1],
               .displacement = motion.displacement.value_or(std::array<double, 2>{}),

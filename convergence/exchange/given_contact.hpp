@@ -18,8 +18,8 @@ namespace slipstick::convergence {
 ///     and its gap; where the scene imposes a motion, that one.
 struct GivenContact : solver::Dimensionless {
   /// bodies: on the contact's grid. middle: of that grid, in the scene's coordinates. p: cells; q: 2*cells.
-  GivenContact(const solver::Dimensionless& bodies, solver::Elasticity elastic,
-               const std::array<double, 2>& middle, Eigen::ArrayXd p, Eigen::ArrayXd q);
+  GivenContact(const solver::Dimensionless& bodies, solver::Elasticity elastic, const std::array<double, 2>& middle,
+               Eigen::ArrayXd p, Eigen::ArrayXd q);
 
   solver::Elasticity elasticity;  ///< makes the operators of its displacements
   std::array<double, 2> centre;   ///< of the grid in the scene's coordinates

@@ -17,8 +17,7 @@ namespace {
 using Eigen::ArrayXd;
 using namespace solver;
 
-ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKernel& kernel,
-                const ArrayXd& to) {
+ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKernel& kernel, const ArrayXd& to) {
   ArrayXd u(kernel.outputs * model.grid.cells());
   solver::elasticity(scene, model, solver::Reduction(model.grid)).make(model.grid, kernel)->apply(to, u);
   return u;
@@ -40,14 +39,13 @@ NormalSolution describe_pressure(const Scene& scene, const Model& model, const A
   return normal;
 }
 
-TangentialSolution describe_tractions(const Scene& scene, const Model& model,
-                                      const TangentialProblem& problem, const ArrayXd& pressure,
-                                      const ArrayXd& traction) {
-  const GivenContact contact(model, solver::elasticity(scene, model, solver::Reduction(model.grid)), {},
-                             pressure, traction);
+TangentialSolution describe_tractions(const Scene& scene, const Model& model, const TangentialProblem& problem,
+                                      const ArrayXd& pressure, const ArrayXd& traction) {
+  const GivenContact contact(model, solver::elasticity(scene, model, solver::Reduction(model.grid)), {}, pressure,
+                             traction);
   const bool translates = problem.force || problem.displacement;
-  State state = find_state(
-      contact, {.twist = problem.twist, .displacement = problem.displacement, .translates = translates});
+  State state =
+      find_state(contact, {.twist = problem.twist, .displacement = problem.displacement, .translates = translates});
   const ArrayXd& bound = problem.friction_bound;
   TangentialSolution found;
   found.status = solver::Status::converged;
@@ -89,8 +87,7 @@ solver::Solution describe_given(Scene scene, const GivenFields& fields) {
                                          fields.traction / model.stress_unit);
   const auto& [shift1, shift2] = solved.tangential.displacement;
   result.motion = {shift1, shift2, solved.tangential.twist};
-  result.numbers =
-      solver::describe_step(scene, model, result.step, solved, result.motion, solved.tangential.slip);
+  result.numbers = solver::describe_step(scene, model, result.step, solved, result.motion, solved.tangential.slip);
   result.work.threads = model.threads;
   result.work.pressure_complementarity = solved.normal.complementarity;
   solver::Solution solution = solver::to_si(std::move(result), model);
@@ -122,8 +119,8 @@ PosedScene pose(Scene scene, bool with_limit) {
   if (with_limit) {
     Step unloaded;
     unloaded.normal = scene.steps.front().normal;
-    posed.moment_limit = solver::load_step(scene, model, unloaded, pressure, {}).moment_limit *
-                         model.grid.cell_area() * model.moment_unit();
+    posed.moment_limit = solver::load_step(scene, model, unloaded, pressure, {}).moment_limit * model.grid.cell_area() *
+                         model.moment_unit();
   }
   return posed;
 }

@@ -33,7 +33,7 @@ struct PosedScene {
   double poisson_ratio;     ///< of the pair: nu/G = nu_1/G_1 + nu_2/G_2
   /// 1/Pa: (1 - 2 nu)/G of the lower body minus the same of the upper; zero without pressure coupling.
   double mismatch;
-  bool coupled;  ///< whether pressure moves the surfaces sideways: under layers also where mismatch is zero
+  bool coupled;         ///< whether pressure moves the surfaces sideways: under layers also where mismatch is zero
   double moment_limit;  ///< N m, of the pressure on this grid; zero unless `with_limit`
 };
 

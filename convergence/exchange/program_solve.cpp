@@ -36,8 +36,7 @@ constexpr double kLoadOff = 0.25;
 
 /// NumPy's format, version 1.0: doubles of this machine, row by row.
 void write_npy(const fs::path& file, const Grid& grid, const ArrayXd& values) {
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", grid.n1, grid.n2);
+  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", grid.n1, grid.n2);
   constexpr std::size_t kBefore = 10;  // magic, version, the header's length
   constexpr std::size_t kAligned = 64;
   header.resize((kBefore + header.size() + kAligned) / kAligned * kAligned - kBefore - 1, ' ');
@@ -74,8 +73,7 @@ std::string write_array(const SolverProgram& program, const ExchangeFiles& files
 }
 
 Json body_json(const solver::Material& body) {
-  if (std::isinf(body.young_modulus))
-    return {{"rigid", true}, {"young_modulus", nullptr}, {"poisson_ratio", nullptr}};
+  if (std::isinf(body.young_modulus)) return {{"rigid", true}, {"young_modulus", nullptr}, {"poisson_ratio", nullptr}};
   return {{"rigid", false}, {"young_modulus", body.young_modulus}, {"poisson_ratio", body.poisson_ratio}};
 }
 
@@ -105,10 +103,9 @@ const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                     const PosedScene& posed) {
   if (!scene.contact.friction.is_coulomb()) {
-    throw solver::InputError(
-        scene.source.string(), "contact.friction_law",
-        fmt::format("\"{}\"", to_string(scene.contact.friction.kind)),
-        "\"coulomb\" without a map, where another program solves: it receives only a coefficient");
+    throw solver::InputError(scene.source.string(), "contact.friction_law",
+                             fmt::format("\"{}\"", to_string(scene.contact.friction.kind)),
+                             "\"coulomb\" without a map, where another program solves: it receives only a coefficient");
   }
   const Grid& grid = posed.grid;
   std::vector<double> x1;
@@ -169,9 +166,8 @@ ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& file
       const auto at = static_cast<Index>(row);
       const double pressure = columns[2].values[at];
       if (!(pressure >= 0.0)) {
-        throw solver::InputError(
-            files.field.string(),
-            fmt::format("row {}: pressure = {}; allowed: zero or positive", row + 1, pressure));
+        throw solver::InputError(files.field.string(),
+                                 fmt::format("row {}: pressure = {}; allowed: zero or positive", row + 1, pressure));
       }
       read.fields.pressure[cells[row]] = pressure;
       if (!tractions) continue;
@@ -197,8 +193,7 @@ OwnNumbers read_own_numbers(const SolverProgram& program, const ExchangeFiles& f
   OwnNumbers own;
   if (!fs::is_regular_file(files.numbers)) return own;
   try {
-    const Json read =
-        read_json(files.numbers, "JSON with twist_angle, iterations, seconds, converged, message");
+    const Json read = read_json(files.numbers, "JSON with twist_angle, iterations, seconds, converged, message");
     const auto find = [&](const char* key, auto& value, bool (Json::*is_right)() const noexcept) {
       const auto found = read.find(key);
       if (found != read.end() && ((*found).*is_right)()) found->get_to(value.emplace());
@@ -276,14 +271,12 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
   }
   if (!own.converged.value_or(true)) {
     answer.solution.status = solver::Status::not_converged;
-    answer.solution.message =
-        own.message.empty() ? program.name + " says that it did not converge" : own.message;
+    answer.solution.message = own.message.empty() ? program.name + " says that it did not converge" : own.message;
   }
   const double said = own.seconds.value_or(wall);
   const double seconds = said >= 0.0 && said <= wall ? said : wall;
   answer.solution.seconds = {.traction = seconds, .total = seconds};
-  answer.solution.iterations =
-      static_cast<int>(std::clamp(own.iterations.value_or(0.0), 0.0, kMaxIterations));
+  answer.solution.iterations = static_cast<int>(std::clamp(own.iterations.value_or(0.0), 0.0, kMaxIterations));
   answer.program = {.name = program.name,
                     .file = program.file.string(),
                     .version = allowed.version ? *allowed.version : version_of(program, allowed.tied_by),

@@ -24,9 +24,8 @@ struct ProgramAnswer {
 ///  3. describe_given() makes a solution of the field; loads that are off by more than a twentieth, or the
 ///     program's own word, make it not converged.
 ///
-/// A load that is a ratio becomes a moment by the limit of the grid's own pressure, as for the built-in
-/// methods. Throws ProgramFailure where the program fails; InputError for a scene that it does not solve, and
-/// a history.
+/// A load that is a ratio becomes a moment by the limit of the grid's own pressure, as for the built-in methods. Throws
+/// ProgramFailure where the program fails; InputError for a scene that it does not solve, and a history.
 ProgramAnswer solve_by_program(const solver::Scene& scene, const AllowedPrograms& allowed);
 
 }  // namespace slipstick::convergence

@@ -34,8 +34,7 @@ void replace(std::string& word, const std::string& name, const fs::path& file) {
     word.replace(at, name.size(), file.string());
 }
 
-ProgramEnd run(const SolverProgram& program, std::vector<std::string> words, double seconds,
-               const fs::path& tied_by) {
+ProgramEnd run(const SolverProgram& program, std::vector<std::string> words, double seconds, const fs::path& tied_by) {
   for (std::string& word : words) replace(word, "{python}", python_interpreter());
   const fs::path folder = program.file.parent_path();
   return Program(words, {.captured = Captured::everything,
@@ -99,11 +98,9 @@ SolverProgram read_solver_program(const fs::path& file) {
   program.name = reader.text_or("name", file.stem().string());
   program.command = reader.texts("command");
   program.version = reader.texts("version");
-  for (const std::string& input : reader.texts("inputs"))
-    program.inputs.push_back(file.parent_path() / input);
+  for (const std::string& input : reader.texts("inputs")) program.inputs.push_back(file.parent_path() / input);
   program.time_limit = reader.number_or("time_limit", program.time_limit);
-  program.numpy =
-      reader.choice_or("arrays", program.numpy, solver::Words<bool>{{"csv", false}, {"npy", true}});
+  program.numpy = reader.choice_or("arrays", program.numpy, solver::Words<bool>{{"csv", false}, {"npy", true}});
   reader.reject_unknown();
   for (const char* needed : {"{scene}", "{field}"}) {
     const bool there = std::ranges::any_of(
@@ -120,8 +117,8 @@ std::string version_of(const SolverProgram& program, const fs::path& tied_by) {
   if (program.version.empty()) return "";
   const ProgramEnd end = run(program, program.version, kVersionSeconds, tied_by);
   if (!end.trouble.empty()) {
-    throw ProgramFailure(with_last_line(
-        fmt::format("{}: while printing its version, it {}", program.name, end.trouble), end.output));
+    throw ProgramFailure(
+        with_last_line(fmt::format("{}: while printing its version, it {}", program.name, end.trouble), end.output));
   }
   return last_line(end.output.substr(0, end.output.find('\n')));
 }
@@ -136,8 +133,7 @@ std::vector<fs::path> program_files(const SolverProgram& program) {
   return files;
 }
 
-ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles& files,
-                              const fs::path& tied_by) {
+ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles& files, const fs::path& tied_by) {
   std::vector<std::string> words = program.command;
   for (std::string& word : words) {
     replace(word, "{scene}", files.scene);
@@ -166,10 +162,9 @@ void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed)
         scene.solver.program == scene.source.parent_path() / unquoted(assignment.substr(kProgramKey.size())))
       return;
   }
-  throw InputError(
-      scene.source.string(), "solver.program", scene.solver.program.string(),
-      "one that the command line names, by --program or by --set solver.program=FILE; others run with "
-      "--allow-programs only, since a program may do whatever you may do");
+  throw InputError(scene.source.string(), "solver.program", scene.solver.program.string(),
+                   "one that the command line names, by --program or by --set solver.program=FILE; others run with "
+                   "--allow-programs only, since a program may do whatever you may do");
 }
 
 }  // namespace slipstick::convergence

@@ -60,8 +60,7 @@ struct AllowedPrograms {
   bool all = false;                         ///< --allow-programs
   std::vector<std::string> overrides = {};  ///< of the command line, which may name one: "solver.program=..."
   std::filesystem::path tied_by = {};       ///< see ProgramOptions
-  std::optional<std::string> version =
-      {};  ///< of the program, where it is known; none: the program prints it
+  std::optional<std::string> version = {};  ///< of the program, where it is known; none: the program prints it
 };
 
 /// The override by which a scene is solved by this program, whatever its file names.

@@ -44,8 +44,7 @@ double half_width(const Interval& interval) { return 0.5 * (interval.high - inte
 /// Distance of a value from the middle over half the width; 0 or infinite where the bound has no middle.
 double factor_of(const Judgement& judgement) {
   const Json& value = judgement.value;
-  if (const auto* equals = std::get_if<Equals>(&judgement.gate.bound))
-    return value == equals->value ? 0.0 : kInfinity;
+  if (const auto* equals = std::get_if<Equals>(&judgement.gate.bound)) return value == equals->value ? 0.0 : kInfinity;
   if (!value.is_number() || !judgement.interval) return kInfinity;
   const double number = value.get<double>();
   const auto [low, high] = *judgement.interval;
@@ -115,11 +114,9 @@ std::string missing_text(const Gate& gate, const Json& result, const FoundQuanti
 
 std::string out_of_bounds_text(const Judgement& judgement) {
   const Json& value = judgement.value;
-  const bool has_factor =
-      std::holds_alternative<Below>(judgement.gate.bound) && std::isfinite(judgement.factor);
+  const bool has_factor = std::holds_alternative<Below>(judgement.gate.bound) && std::isfinite(judgement.factor);
   return fmt::format("{} is {}, must be {}{}", judgement.gate.quantity,
-                     value.is_number() ? number_text(value.get<double>()) : value.dump(),
-                     bound_text(judgement),
+                     value.is_number() ? number_text(value.get<double>()) : value.dump(), bound_text(judgement),
                      has_factor ? fmt::format(": {:.3g} times the bound", judgement.factor) : "");
 }
 
@@ -166,8 +163,7 @@ Judgement judge_by(Judgement judgement, const Json& result) {
     judgement.why = is_published ? "agrees with the published number: remove `differs`"
                                  : "expected to fail, and holds: remove the gate, or make it active";
   }
-  const bool no_number =
-      is_published && (!std::isfinite(judgement.factor) || !unfinished(gate, result).empty());
+  const bool no_number = is_published && (!std::isfinite(judgement.factor) || !unfinished(gate, result).empty());
   if (judgement.outcome == Outcome::failed_as_expected && (is_unknown(found) || no_number)) {
     judgement.outcome = Outcome::failed;  // a misspelt quantity is not the expected failure
   }
@@ -199,8 +195,7 @@ double error_of_ours(const Gate& gate, const Json& result) {
   const FoundQuantity found = find_quantity(result, gate.quantity);
   if (found.value == nullptr || !found.value->is_number()) return 0.0;
   const auto& relative = std::get<Published>(gate.bound).relative_error;
-  const std::optional<double> error =
-      relative ? *relative * std::abs(found.value->get<double>()) : own_error(found);
+  const std::optional<double> error = relative ? *relative * std::abs(found.value->get<double>()) : own_error(found);
   if (error) return *error;
   throw solver::InputError(gate.file.string() + ": " + gate.id, "quantity", gate.quantity,
                            "a number with an error in the result, such as a study's extrapolated value "
@@ -223,8 +218,7 @@ std::string reason_for(const Published& published, Comparison comparison) {
 }  // namespace
 
 std::string to_string(Outcome outcome) {
-  constexpr std::array kWords{"passed",   "failed", "failed as expected", "passed unexpectedly",
-                              "reported", "refused"};
+  constexpr std::array kWords{"passed", "failed", "failed as expected", "passed unexpectedly", "reported", "refused"};
   return kWords.at(static_cast<std::size_t>(outcome));
 }
 
@@ -294,8 +288,7 @@ std::string bound_text(const Judgement& judgement) {
     std::string operator()(const RelativeTo& relative) const {
       const std::string other =
           known ? fmt::format("{:.7g}, the value", 0.5 * (known->high + known->low)) : "the value";
-      return fmt::format("within {:g} of {} of {}", relative.within, other,
-                         relative.file.filename().string());
+      return fmt::format("within {:g} of {} of {}", relative.within, other, relative.file.filename().string());
     }
     std::string operator()(const Published& published) const {
       return fmt::format("the published {} ({})", published.number.text, published.source);
@@ -308,8 +301,7 @@ std::string rerun_command(const Gate& gate) {
   const auto* const result = std::get_if<ResultSource>(&gate.source);
   const bool elsewhere = result != nullptr && !result->folder.empty();
   return fmt::format("slipstick gate {}{} --only {}", shell_word(gate.file.string()),
-                     elsewhere ? " --results " + shell_word(result->folder.string()) : "",
-                     shell_word(gate.id));
+                     elsewhere ? " --results " + shell_word(result->folder.string()) : "", shell_word(gate.id));
 }
 
 std::filesystem::path file_of(const GateSource& source) {
@@ -347,8 +339,7 @@ std::optional<OwnNumber> own_number(const Judgement& judgement) {
   const double ours = judgement.value.get<double>();
   const double shown = in_unit_of_publication(published, ours);
   const double scale = std::abs(shown / ours);
-  return OwnNumber{shown, judgement.own_error * scale,
-                   judgement.own_error * scale / published.number.half_unit};
+  return OwnNumber{shown, judgement.own_error * scale, judgement.own_error * scale / published.number.half_unit};
 }
 
 Judgement judge_published(const Gate& gate, const Json& result) {
@@ -356,8 +347,7 @@ Judgement judge_published(const Gate& gate, const Json& result) {
   const double own_error = error_of_ours(gate, result);
   Judgement judgement = judge_within(gate, interval_of(published, own_error), result);
   judgement.own_error = own_error;
-  const bool within =
-      judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
+  const bool within = judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
   const double half_units = own_number(judgement).value_or(OwnNumber{}).half_units;
   const double half_unit = published.number.half_unit;
   const bool known = half_units * half_unit <= half_unit + published.argument_error;
@@ -365,8 +355,7 @@ Judgement judge_published(const Gate& gate, const Json& result) {
   if (within && !known) {
     judgement.outcome = undecided ? Outcome::reported : Outcome::refused;
     judgement.why = fmt::format(
-        "our own error is {:.3g} half units of the last printed digit, too large for a comparison{}",
-        half_units,
+        "our own error is {:.3g} half units of the last printed digit, too large for a comparison{}", half_units,
         undecided ? ": " + published.why : "; reduce our error, or give the reason in `undecided`");
   } else if (undecided && judgement.outcome == Outcome::passed) {
     judgement.outcome = Outcome::passed_unexpectedly;

@@ -95,8 +95,7 @@ struct Gate {
   std::size_t line = 0;
   std::string id;
   GateSource source;
-  std::string
-      quantity;  ///< path into the result, as in steps[3].traction_error.l2; empty: gate file unreadable
+  std::string quantity;  ///< path into the result, as in steps[3].traction_error.l2; empty: gate file unreadable
   Bound bound = Below{};
   double platform_spread = 0.0;  ///< difference between machines and compilers, in the quantity's unit
   std::string basis;             ///< origin of the bound
@@ -112,15 +111,14 @@ std::string to_string(Outcome outcome);
 struct Judgement {
   Gate gate;
   Outcome outcome = Outcome::refused;
-  Json value;  ///< null: the result has none
-  std::optional<Interval>
-      interval;                ///< allowed numbers; none for a word, or while the other result is unknown
-  double own_error = 0.0;      ///< error of `value` in its unit, known for published numbers
-  double factor = 0.0;         ///< distance from the bound: 1 is at the bound, infinite where no number is
-  std::string why;             ///< one sentence; empty where it passed
-  std::string dominant_error;  ///< largest part of the error budget; empty: unknown
-  double seconds = 0.0;        ///< of the result; zero where an earlier gate has the same source
-  std::string file_date;       ///< last change of a result file (UTC); empty for other sources
+  Json value;                        ///< null: the result has none
+  std::optional<Interval> interval;  ///< allowed numbers; none for a word, or while the other result is unknown
+  double own_error = 0.0;            ///< error of `value` in its unit, known for published numbers
+  double factor = 0.0;               ///< distance from the bound: 1 is at the bound, infinite where no number is
+  std::string why;                   ///< one sentence; empty where it passed
+  std::string dominant_error;        ///< largest part of the error budget; empty: unknown
+  double seconds = 0.0;              ///< of the result; zero where an earlier gate has the same source
+  std::string file_date;             ///< last change of a result file (UTC); empty for other sources
 };
 
 /// The width of a gate over the error of the exact answer and the spread of platforms is at least this:

@@ -27,8 +27,7 @@ namespace {
 
 /// Options that name files which the module `ci` of the Python package makes of a run, and their help.
 constexpr std::array kExports{
-    std::pair{"--history",
-              "add this run to a file, a JSON object a line: commit, date, values with bounds, times"},
+    std::pair{"--history", "add this run to a file, a JSON object a line: commit, date, values with bounds, times"},
     std::pair{"--figure", "draw the values of --history with their bounds over the runs (.svg)"},
     std::pair{"--badge", "write the counts for a badge of shields.io's endpoint"},
     std::pair{"--bencher", "write values and times in Bencher's format (BMF JSON)"},
@@ -56,8 +55,7 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
   for (const GateSource& source : sources_of(gates)) {
     if (const auto file = file_of(source); !file.empty()) files.push_back(file);
     try {
-      if (const auto* const scene = std::get_if<SceneSource>(&source))
-        add_scene(scene->file, scene->overrides);
+      if (const auto* const scene = std::get_if<SceneSource>(&source)) add_scene(scene->file, scene->overrides);
       if (const auto* const of_study = std::get_if<StudySource>(&source)) {
         const Study study = read_study(of_study->file, of_study->overrides);
         add_scene(study.scene, study.overrides);
@@ -126,8 +124,7 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
   const Interrupts interrupts;
   std::vector<PreparedRun> lacking;
   const ProcessPool pool = request.runs.pool(&lacking);
-  const std::vector<Gate> gates =
-      with_overrides(select_gates(files.gates, request.only), request.runs.overrides);
+  const std::vector<Gate> gates = with_overrides(select_gates(files.gates, request.only), request.runs.overrides);
   std::vector<Judgement> judged = run_gates(gates, pool);
   if (!request.runs.list.empty()) return request.runs.write_list(lacking, text, result);
   for (Judgement& judgement : judged) {
@@ -152,18 +149,15 @@ int run_gate(const CLI::App& command, const GateRequest& request, std::ostream& 
 
 RunCommand add_gate_command(CLI::App& app) {
   const auto request = std::make_shared<GateRequest>();
-  CLI::App* const command =
-      app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
+  CLI::App* const command = app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
   command->add_option("files", request->files, "gate files (TOML)")->required();
   command->add_option("--only", request->only,
                       "run only the gates with these ids, as 'paper-*' too; comes after the files");
-  CLI::Option* const list = command->add_flag(
-      "--list", request->list, "list the gates with their files, quantities and bounds, and run none");
+  CLI::Option* const list = command->add_flag("--list", request->list,
+                                              "list the gates with their files, quantities and bounds, and run none");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file")
       ->excludes(list);
-  command
-      ->add_option("--summary", request->summary,
-                   "add a Markdown table, the worst first, below 64 kB, to this file")
+  command->add_option("--summary", request->summary, "add a Markdown table, the worst first, below 64 kB, to this file")
       ->excludes(list);
   std::vector<std::string> of_judgement{"--junit", "--summary", "--list"};
   for (const auto& [option, help] : kExports) {

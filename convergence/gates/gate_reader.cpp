@@ -113,8 +113,7 @@ Published read_published(SceneReader& reader, const GateTable& at) {
   const std::string text = reader.text(key);
   const std::optional<PrintedNumber> number = read_printed(text);
   if (!number) {
-    reader.fail(key, "\"" + text + "\"",
-                "a number with the digits that are printed, as \"1.0760\" or \"8.155e-3\"");
+    reader.fail(key, "\"" + text + "\"", "a number with the digits that are printed, as \"1.0760\" or \"8.155e-3\"");
   }
   Published published;
   published.number = *number;
@@ -181,8 +180,7 @@ Gate read_gate(SceneReader& reader, const GateTable& at, const std::filesystem::
   gate.bound = read_bound(reader, at);
   const auto* const published = std::get_if<Published>(&gate.bound);
   gate.status = reader.choice_or(at.shared("status"), gate.status, kStatuses);
-  if (published != nullptr && published->expected == Comparison::differs)
-    gate.status = GateStatus::expected_failure;
+  if (published != nullptr && published->expected == Comparison::differs) gate.status = GateStatus::expected_failure;
   if (published == nullptr || published->expected != Comparison::not_compared)
     gate.source = read_source(reader, at, results);
   gate.quantity = required_text(reader, at.own("quantity"));
@@ -211,57 +209,55 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
 solver::SettingKeys shared_keys() {
   using namespace solver;
   constexpr const char* kOne = "one of scene, study, result is required";
-  return {{"status", KeyType::word, "", word_of(kStatuses, Gate{}.status), one_of(kStatuses),
-           "active: the run fails if the gate fails; expected_failure: the run fails if the gate passes; "
-           "report_only: the gate has no effect."},
-          {"scene", KeyType::file, "", kOne, kAny, "Scene file (TOML) to solve."},
-          {"study", KeyType::file, "", kOne, kAny, "Study file (TOML) to run."},
-          {"result", KeyType::file, "", kOne, kAny, "Result file (JSON) of any program."},
-          {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
-          {"published_in", KeyType::text, "", "required with published", kAny,
-           "Source of the published number: author, year, title, table or equation, page."},
-          {"seen_in", KeyType::text, "", "the publication itself", kAny,
-           "The text in which the number was read, if it is another one."},
-          {"own_error", KeyType::number, "", "the error that the result states", kNotNegative,
-           "Relative error of our number, where the result states none; `basis` gives its origin."},
-          {"times", KeyType::number, "", fmt::format("{:g}", Published{}.times), kPositive,
-           "The published number is `times` x the quantity."},
-          {"inverse", KeyType::flag, "", "false", kAny, "The published number is `times` over the quantity."},
-          {"differs", KeyType::text, "", "none", kAny,
-           "Why the published number differs: then the gate must not hold."},
-          {"undecided", KeyType::text, "", "none", kAny,
-           "Why our own error is larger than the printed digits: then agreement is reported as undecided."},
-          {"not_compared", KeyType::text, "", "none", kAny,
-           "Why the number cannot be compared: then nothing is solved."},
-          {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
-           kNotNegative, "Largest difference between machines and compilers."},
-          {"basis", KeyType::text, "", "required of an active gate", kAny, "Origin of the bound."},
-          {"reason", KeyType::text, "", "none", kAny, "Why the number matters."}};
+  return {
+      {"status", KeyType::word, "", word_of(kStatuses, Gate{}.status), one_of(kStatuses),
+       "active: the run fails if the gate fails; expected_failure: the run fails if the gate passes; "
+       "report_only: the gate has no effect."},
+      {"scene", KeyType::file, "", kOne, kAny, "Scene file (TOML) to solve."},
+      {"study", KeyType::file, "", kOne, kAny, "Study file (TOML) to run."},
+      {"result", KeyType::file, "", kOne, kAny, "Result file (JSON) of any program."},
+      {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
+      {"published_in", KeyType::text, "", "required with published", kAny,
+       "Source of the published number: author, year, title, table or equation, page."},
+      {"seen_in", KeyType::text, "", "the publication itself", kAny,
+       "The text in which the number was read, if it is another one."},
+      {"own_error", KeyType::number, "", "the error that the result states", kNotNegative,
+       "Relative error of our number, where the result states none; `basis` gives its origin."},
+      {"times", KeyType::number, "", fmt::format("{:g}", Published{}.times), kPositive,
+       "The published number is `times` x the quantity."},
+      {"inverse", KeyType::flag, "", "false", kAny, "The published number is `times` over the quantity."},
+      {"differs", KeyType::text, "", "none", kAny, "Why the published number differs: then the gate must not hold."},
+      {"undecided", KeyType::text, "", "none", kAny,
+       "Why our own error is larger than the printed digits: then agreement is reported as undecided."},
+      {"not_compared", KeyType::text, "", "none", kAny, "Why the number cannot be compared: then nothing is solved."},
+      {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread), kNotNegative,
+       "Largest difference between machines and compilers."},
+      {"basis", KeyType::text, "", "required of an active gate", kAny, "Origin of the bound."},
+      {"reason", KeyType::text, "", "none", kAny, "Why the number matters."}};
 }
 
 /// The keys that each gate has for itself.
 solver::SettingKeys own_keys() {
   using namespace solver;
   constexpr const char* kBound = "one of below, above, equals, of, published is required";
-  return {
-      {"id", KeyType::text, "", kRequired, kAny, "Name of the gate; it is unique in the run."},
-      {"quantity", KeyType::text, "", kRequired, kAny,
-       "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
-      {"below", KeyType::number, "the quantity's", kBound, kFinite,
-       "Without `above`: the size of the number is smaller. With `above`: the signed number is smaller."},
-      {"above", KeyType::number, "the quantity's", kBound, kFinite, "The signed number is larger."},
-      {"equals", KeyType::number, "the quantity's", kBound, kFinite,
-       "The value is this number or, in quotes, this word."},
-      {"published", KeyType::text, "", kBound, kAny,
-       "Published number as printed, in quotes. The quantity agrees within half a unit of the last digit, "
-       "`argument_error` and our own error."},
-      {"argument_error", KeyType::number, "the published", "0", kNotNegative,
-       "Error of the published number by the printed digits of its argument."},
-      {"of", KeyType::file, "", kBound, kAny,
-       "Result file (JSON), or scene or study (TOML, solved with the same `set`), whose quantity this one "
-       "must equal."},
-      {"within", KeyType::number, "", "required with of", kPositive,
-       "Allowed difference from the quantity of `of`, over the size of that quantity."}};
+  return {{"id", KeyType::text, "", kRequired, kAny, "Name of the gate; it is unique in the run."},
+          {"quantity", KeyType::text, "", kRequired, kAny,
+           "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
+          {"below", KeyType::number, "the quantity's", kBound, kFinite,
+           "Without `above`: the size of the number is smaller. With `above`: the signed number is smaller."},
+          {"above", KeyType::number, "the quantity's", kBound, kFinite, "The signed number is larger."},
+          {"equals", KeyType::number, "the quantity's", kBound, kFinite,
+           "The value is this number or, in quotes, this word."},
+          {"published", KeyType::text, "", kBound, kAny,
+           "Published number as printed, in quotes. The quantity agrees within half a unit of the last digit, "
+           "`argument_error` and our own error."},
+          {"argument_error", KeyType::number, "the published", "0", kNotNegative,
+           "Error of the published number by the printed digits of its argument."},
+          {"of", KeyType::file, "", kBound, kAny,
+           "Result file (JSON), or scene or study (TOML, solved with the same `set`), whose quantity this one "
+           "must equal."},
+          {"within", KeyType::number, "", "required with of", kPositive,
+           "Allowed difference from the quantity of `of`, over the size of that quantity."}};
 }
 
 solver::SettingKeys all_keys() {
@@ -312,8 +308,7 @@ std::vector<Gate> read_gates(const std::filesystem::path& file, const std::files
   return gates;
 }
 
-GateFiles read_gate_files(const std::vector<std::string>& files,
-                          const std::filesystem::path& results_folder) {
+GateFiles read_gate_files(const std::vector<std::string>& files, const std::filesystem::path& results_folder) {
   GateFiles result;
   std::map<std::string, std::string> places;
   for (const std::string& file : files) {
@@ -339,19 +334,17 @@ std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector
     std::vector<std::string> known;
     for (const Gate& gate : gates) {
       known.push_back(gate.id);
-      if (is_id ? gate.id == pattern : fnmatch(pattern.c_str(), gate.id.c_str(), 0) == 0)
-        matching.push_back(gate.id);
+      if (is_id ? gate.id == pattern : fnmatch(pattern.c_str(), gate.id.c_str(), 0) == 0) matching.push_back(gate.id);
     }
     if (matching.empty()) {
-      throw InputError("--only " + pattern, known.empty() ? "there is no gate"
-                                                          : "no gate has this id; the nearest is " +
-                                                                solver::nearest_word(pattern, known));
+      throw InputError("--only " + pattern,
+                       known.empty() ? "there is no gate"
+                                     : "no gate has this id; the nearest is " + solver::nearest_word(pattern, known));
     }
     selected.insert(matching.begin(), matching.end());
   }
   std::vector<Gate> chosen;
-  std::ranges::copy_if(gates, std::back_inserter(chosen),
-                       [&](const Gate& gate) { return selected.contains(gate.id); });
+  std::ranges::copy_if(gates, std::back_inserter(chosen), [&](const Gate& gate) { return selected.contains(gate.id); });
   return chosen;
 }
 

@@ -25,20 +25,16 @@ bool is_wrong(Outcome outcome) {
   return outcome == Outcome::failed || outcome == Outcome::passed_unexpectedly || outcome == Outcome::refused;
 }
 
-bool is_skipped(Outcome outcome) {
-  return outcome == Outcome::reported || outcome == Outcome::failed_as_expected;
-}
+bool is_skipped(Outcome outcome) { return outcome == Outcome::reported || outcome == Outcome::failed_as_expected; }
 
 std::vector<const Judgement*> worst_first(const std::vector<Judgement>& judgements) {
   std::vector<const Judgement*> sorted;
   for (const Judgement& judgement : judgements) sorted.push_back(&judgement);
   const auto badness = [](const Judgement* judgement) {
-    const auto severity =
-        std::find(kSeverity.begin(), kSeverity.end(), judgement->outcome) - kSeverity.begin();
+    const auto severity = std::find(kSeverity.begin(), kSeverity.end(), judgement->outcome) - kSeverity.begin();
     return std::make_tuple(severity, -judgement->factor);
   };
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](const auto* a, const auto* b) { return badness(a) < badness(b); });
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return badness(a) < badness(b); });
   return sorted;
 }
 
@@ -59,8 +55,7 @@ std::string counts_of(const std::vector<Judgement>& judgements) {
     const long number = count(judgements, *outcome);
     if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*outcome)));
   }
-  return fmt::format("{} gate{}: {}", judgements.size(), judgements.size() == 1 ? "" : "s",
-                     fmt::join(parts, ", "));
+  return fmt::format("{} gate{}: {}", judgements.size(), judgements.size() == 1 ? "" : "s", fmt::join(parts, ", "));
 }
 
 /// One line on the published numbers; empty where there are none.
@@ -69,8 +64,7 @@ std::string published_counts(const std::vector<Judgement>& judgements) {
   std::set<std::string> sources;
   for (const Judgement& judgement : judgements) {
     ++counts[comparison_of(judgement)];
-    if (const auto* const published = std::get_if<Published>(&judgement.gate.bound))
-      sources.insert(published->source);
+    if (const auto* const published = std::get_if<Published>(&judgement.gate.bound)) sources.insert(published->source);
   }
   if (sources.empty()) return "";
   return fmt::format(
@@ -129,13 +123,13 @@ JunitCase junit_case(const Judgement& judgement) {
                   .type = to_string(judgement.outcome),
                   .message = judgement.why};
   if (was_read(judgement)) {
-    junit.shown = fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement),
-                              bound_text(judgement));
+    junit.shown =
+        fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement), bound_text(judgement));
   }
   if (is_skipped(judgement.outcome)) {
     junit.verdict = CaseVerdict::skipped;
-    junit.message = fmt::format("{}: {}", to_string(judgement.outcome),
-                                judgement.why.empty() ? junit.shown : judgement.why);
+    junit.message =
+        fmt::format("{}: {}", to_string(judgement.outcome), judgement.why.empty() ? junit.shown : judgement.why);
   } else if (is_wrong(judgement.outcome)) {
     junit.verdict = judgement.outcome == Outcome::refused ? CaseVerdict::error : CaseVerdict::failure;
     junit.details = fmt::format("{}", fmt::join(explanation(judgement), "\n"));
@@ -146,9 +140,8 @@ JunitCase junit_case(const Judgement& judgement) {
 std::string markdown_row(const Judgement& judgement) {
   const std::string remarks =
       judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
-  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", outcome_text(judgement),
-                     markdown_text(judgement.gate.id), markdown_text(judgement.gate.quantity),
-                     markdown_text(value_text(judgement)),
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", outcome_text(judgement), markdown_text(judgement.gate.id),
+                     markdown_text(judgement.gate.quantity), markdown_text(value_text(judgement)),
                      was_read(judgement) ? markdown_text(bound_text(judgement)) : "-", factor_text(judgement),
                      markdown_text(remarks));
 }
@@ -167,10 +160,8 @@ Json bound_json(const Judgement& judgement) {
 
 Json judgement_json(const Judgement& judgement) {
   const Gate& gate = judgement.gate;
-  Json json{{"id", gate.id},
-            {"file", gate.file.string()},
-            {"line", gate.line},
-            {"outcome", to_string(judgement.outcome)}};
+  Json json{
+      {"id", gate.id}, {"file", gate.file.string()}, {"line", gate.line}, {"outcome", to_string(judgement.outcome)}};
   if (was_read(judgement)) {
     json.update(Json{{"quantity", gate.quantity}, {"value", judgement.value}});
     if (judgement.value.is_null()) json.emplace("value_reason", judgement.why);
@@ -199,8 +190,8 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
     const Gate& gate = judgement.gate;
     if (!judgement.file_date.empty()) dates[file_of(gate.source).string()] = judgement.file_date;
     if (was_read(judgement)) {
-      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", outcome_text(judgement), gate.id, width,
-                          gate.quantity, value_text(judgement), bound_text(judgement));
+      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", outcome_text(judgement), gate.id, width, gate.quantity,
+                          value_text(judgement), bound_text(judgement));
     }
     if (!is_wrong(judgement.outcome)) continue;
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
@@ -220,8 +211,8 @@ std::string list_text(const std::vector<Judgement>& gates) {
   }
   for (const Judgement& each : gates) {
     const Gate& gate = each.gate;
-    text += was_read(each) ? fmt::format("  {:<{}}  {:<{}}  {}, {}\n", gate.id, ids, source_name(gate),
-                                         sources, gate.quantity, bound_text(each))
+    text += was_read(each) ? fmt::format("  {:<{}}  {:<{}}  {}, {}\n", gate.id, ids, source_name(gate), sources,
+                                         gate.quantity, bound_text(each))
                            : fmt::format("  {}: {}\n", gate.id, each.why);
   }
   return text + fmt::format("{} gate{}\n", gates.size(), gates.size() == 1 ? "" : "s");
@@ -232,16 +223,13 @@ Json list_json(const std::vector<Judgement>& gates) {
   for (const Judgement& each : gates) {
     Json& row = rows.emplace_back(judgement_json(each));
     if (!was_read(each)) continue;
-    for (const char* const of_verdict :
-         {"outcome", "value", "value_reason", "factor", "factor_reason", "why"})
+    for (const char* const of_verdict : {"outcome", "value", "value_reason", "factor", "factor_reason", "why"})
       row.erase(of_verdict);
     constexpr std::array kSources{"", "scene", "study", "result"};
     if (const std::string name = source_name(each.gate); name != "-")
       row.emplace(kSources.at(each.gate.source.index()), name);
-    if (const auto* const scene = std::get_if<SceneSource>(&each.gate.source))
-      row.emplace("set", scene->overrides);
-    if (const auto* const study = std::get_if<StudySource>(&each.gate.source))
-      row.emplace("set", study->overrides);
+    if (const auto* const scene = std::get_if<SceneSource>(&each.gate.source)) row.emplace("set", scene->overrides);
+    if (const auto* const study = std::get_if<StudySource>(&each.gate.source)) row.emplace("set", study->overrides);
   }
   return {{"listed", rows}};
 }
@@ -257,8 +245,7 @@ std::string gates_markdown(const std::vector<Judgement>& judgements) {
   std::vector<std::string> rows;
   for (const Judgement* const judgement : worst_first(judgements)) rows.push_back(markdown_row(*judgement));
   return markdown_with_table(fmt::format("### {}\n\n", counts_of(judgements)),
-                             "| outcome | gate | quantity | value | must be | times the bound | |", rows,
-                             "gates");
+                             "| outcome | gate | quantity | value | must be | times the bound | |", rows, "gates");
 }
 
 Json counts_json(const std::vector<Judgement>& judgements) {

@@ -46,10 +46,9 @@ std::string find_dominant_error(const Judgement& judgement, const ProcessPool& p
       error_budget(prepare_run({.scene = scene->file, .overrides = scene->overrides}), gate.quantity, pool);
   const double parts = budget.discretisation + budget.iteration + budget.rounding + budget.reference;
   if (!std::isfinite(parts)) return "unknown: the solves for the budget have no such number";
-  return fmt::format(
-      "{} (of {:.2g}: discretisation {:.2g}, iteration {:.2g}, rounding {:.1g}, reference {:.1g})",
-      largest_part(budget), budget.observed, budget.discretisation, budget.iteration, budget.rounding,
-      budget.reference);
+  return fmt::format("{} (of {:.2g}: discretisation {:.2g}, iteration {:.2g}, rounding {:.1g}, reference {:.1g})",
+                     largest_part(budget), budget.observed, budget.discretisation, budget.iteration, budget.rounding,
+                     budget.reference);
 }
 
 void solve_scenes(const std::vector<GateSource>& sources, const ProcessPool& pool, SourceResults& results) {
@@ -91,8 +90,9 @@ Json study_result(const StudySource& source, const ProcessPool& pool) {
 /// The day of a file's last change.
 std::string date_of(const fs::path& file) {
   const auto changed = std::chrono::file_clock::to_sys(fs::last_write_time(file));
-  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                        std::chrono::time_point_cast<std::chrono::seconds>(changed))));
+  return fmt::format(
+      "{:%Y-%m-%d}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::seconds>(changed))));
 }
 
 SourceResult read_result(const ResultSource& source) {
@@ -108,8 +108,7 @@ void find_others(const std::vector<GateSource>& sources, const ProcessPool& pool
   for (const GateSource& source : sources) {
     SourceResult& found = results[source];
     try {
-      if (const auto* const study = std::get_if<StudySource>(&source))
-        found.result = study_result(*study, pool);
+      if (const auto* const study = std::get_if<StudySource>(&source)) found.result = study_result(*study, pool);
       if (const auto* const file = std::get_if<ResultSource>(&source)) found = read_result(*file);
     } catch (const InputError& error) {
       found.refused = error.what();

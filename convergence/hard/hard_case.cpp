@@ -62,8 +62,7 @@ std::vector<HardCase> read_family(SceneReader& reader, const std::string& at) {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A converged answer balances its loads within this, relative: ten times the rounding of sums over 1e6
-/// cells.
+/// A converged answer balances its loads within this, relative: ten times the rounding of sums over 1e6 cells.
 constexpr double kBalanced = 1e-8;
 /// A stated uncertainty counts as at least this, relative, for rounding and the stopping test.
 constexpr double kMinUncertainty = 1e-6;
@@ -154,12 +153,10 @@ double natural_moment(const EndRecord& end) {
          or_zero(energy_of(end) * radius_of(end) / end.contact.approach);
 }
 
-constexpr std::array kComparedNumbers{ComparedNumber{twist_of, true, false, natural_twist},
-                                      ComparedNumber{moment_of, true, true, natural_moment},
-                                      ComparedNumber{limit_of, false, true, no_size},
-                                      ComparedNumber{load_of, false, false, no_size},
-                                      ComparedNumber{radius_of, false, true, no_size},
-                                      ComparedNumber{elastic_of, false, true, energy_of}};
+constexpr std::array kComparedNumbers{
+    ComparedNumber{twist_of, true, false, natural_twist}, ComparedNumber{moment_of, true, true, natural_moment},
+    ComparedNumber{limit_of, false, true, no_size},       ComparedNumber{load_of, false, false, no_size},
+    ComparedNumber{radius_of, false, true, no_size},      ComparedNumber{elastic_of, false, true, energy_of}};
 
 /// Number of the variant / number of the scene itself.
 double factor(const ComparedNumber& number, Variant variant) {
@@ -171,8 +168,8 @@ double factor(const ComparedNumber& number, Variant variant) {
 /// Distance of two normal contacts.
 double pressure_difference(const ContactRecord& contact, const ContactRecord& other) {
   double largest = 0.0;
-  for (const auto number : {&ContactRecord::normal_load, &ContactRecord::contact_radius,
-                            &ContactRecord::approach, &ContactRecord::peak_pressure}) {
+  for (const auto number : {&ContactRecord::normal_load, &ContactRecord::contact_radius, &ContactRecord::approach,
+                            &ContactRecord::peak_pressure}) {
     const double difference = std::abs(other.*number / contact.*number - 1.0);
     if (!std::isnan(contact.*number) && !(difference <= largest)) largest = difference;
   }
@@ -234,8 +231,8 @@ JudgedCase judge_alone(const SolveRecord& record) {
   }
   if (std::isnan(uncertainty)) return {HardVerdict::wrong, "it states no uncertainty", numbers};
   if (error > uncertainty) {
-    return {HardVerdict::wrong,
-            fmt::format("it is {:.3g} from the exact answer, and says {:.3g}", error, uncertainty), numbers};
+    return {HardVerdict::wrong, fmt::format("it is {:.3g} from the exact answer, and says {:.3g}", error, uncertainty),
+            numbers};
   }
   return {HardVerdict::certified, "", numbers};
 }
@@ -256,8 +253,7 @@ MeshReference judge_by_finer(double value, double absolute, double twice, double
   const double change = std::abs(twice - four_times);
   const bool claims_nothing = absolute >= std::abs(value);
   const double unit = 1.0 / std::abs(four_times);
-  return {unit * error, unit * change,
-          error <= absolute + change || (claims_nothing && std::isfinite(error))};
+  return {unit * error, unit * change, error <= absolute + change || (claims_nothing && std::isfinite(error))};
 }
 
 double same_answer(const SolveRecord& record) {
@@ -307,15 +303,14 @@ ComparedAnswer compare_answer(const SolveRecord& certified, const SolveRecord& o
   // Another discretisation has another error, and promises no gap on this one.
   const double by_mesh = foreign ? std::fmax(certified.end.resolution.uncertainty, 0.0) : 0.0;
   if (!(difference <= kAgree + same_answer(certified) + by_mesh)) {
-    return {MethodVerdict::other_answer,
-            fmt::format("it differs by {:.2g} from the certified answer", difference), numbers};
+    return {MethodVerdict::other_answer, fmt::format("it differs by {:.2g} from the certified answer", difference),
+            numbers};
   }
   const double direction = numbers.slip_direction;
   if (foreign && std::isnan(direction)) return {MethodVerdict::agrees, "", numbers};  // nothing slips
   if (!(direction <= kOpposed) && !(numbers.gap.value_or(Number()) <= kNoticed)) {
     return {MethodVerdict::other_direction,
-            fmt::format("its slip is turned by {:.2g} degrees from the reverse of traction", direction),
-            numbers};
+            fmt::format("its slip is turned by {:.2g} degrees from the reverse of traction", direction), numbers};
   }
   return {MethodVerdict::agrees, "", numbers};
 }

@@ -9,8 +9,7 @@
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/setting_key.hpp"
 
-/// Scenes that are hard to solve, by the hundred, and verdicts on the records of their solves. Distances are
-/// relative.
+/// Scenes that are hard to solve, by the hundred, and verdicts on the records of their solves. Distances are relative.
 namespace slipstick::convergence {
 
 /// One scene of a family, which varies some keys of a scene in all combinations.
@@ -24,9 +23,8 @@ struct HardCase {
 /// Every key that a file of hard cases may have; read_hard_cases() reads by it.
 const solver::SettingKeys& hard_keys();
 
-/// The cases of a file (TOML): [[family]] tables with `name`, `why`, `scene`, a table `set` of keys of the
-/// scene, and [[family.vary]] tables with `key` and `values`. Throws InputError naming file, key, value and
-/// what is allowed.
+/// The cases of a file (TOML): [[family]] tables with `name`, `why`, `scene`, a table `set` of keys of the scene, and
+/// [[family.vary]] tables with `key` and `values`. Throws InputError naming file, key, value and what is allowed.
 std::vector<HardCase> read_hard_cases(const std::filesystem::path& file);
 
 /// Outcome of a hard case: solved, with a valid certificate and within its stated uncertainty of all that is
@@ -41,8 +39,7 @@ struct JudgedNumbers {
   Number seconds;         ///< s
   Number slip_direction;  ///< mean angle to the reverse of traction, degrees
   std::optional<solver::Safeguards> safeguards;
-  std::optional<Number>
-      error;  ///< against the exact answer; this and the following of converged answers only
+  std::optional<Number> error;         ///< against the exact answer; this and the following of converged answers only
   std::optional<Number> uncertainty;   ///< as stated
   std::optional<Number> gap;           ///< certificate.gap
   std::optional<Number> finer_error;   ///< see MeshReference

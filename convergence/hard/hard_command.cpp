@@ -93,8 +93,8 @@ int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostre
 
 RunCommand add_hard_command(CLI::App& app) {
   const auto request = std::make_shared<HardRequest>();
-  CLI::App* const command = app.add_subcommand(
-      "hard", "Solve hard scenes by the hundred, each in several views; judge each answer");
+  CLI::App* const command =
+      app.add_subcommand("hard", "Solve hard scenes by the hundred, each in several views; judge each answer");
   command->add_option("files", request->files, "files of families of scenes (TOML)")->required();
   add_set_option(*command, request->runs.overrides, "override a key of all scenes");
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");

@@ -23,8 +23,7 @@ constexpr const char* kFiner = "finer meshes";
 std::vector<std::string> grid_of(const SolveRecord& record, int finer = 1) {
   const auto& [n1, n2] = record.problem.cells;
   const auto& [h1, h2] = record.problem.cell_size;
-  return {fmt::format("grid.extent=[{:.17g},{:.17g}]", h1 * static_cast<double>(n1),
-                      h2 * static_cast<double>(n2)),
+  return {fmt::format("grid.extent=[{:.17g},{:.17g}]", h1 * static_cast<double>(n1), h2 * static_cast<double>(n2)),
           fmt::format("grid.cells=[{},{}]", finer * n1, finer * n2)};
 }
 
@@ -56,8 +55,7 @@ std::vector<HardRow> solve_cases(const std::vector<HardCase>& cases, const std::
     HardRow& row = rows[i];
     row.record = std::move(records[i]);
     row.judged = judge_alone(row.record);
-    if (row.judged.verdict == certified)
-      row.scene = solver::read_scene(row.hard.run.scene, row.hard.run.overrides);
+    if (row.judged.verdict == certified) row.scene = solver::read_scene(row.hard.run.scene, row.hard.run.overrides);
   }
   return rows;
 }
@@ -115,9 +113,8 @@ void judge_variants(std::vector<HardRow>& rows, const ProcessPool& pool) {
 
 /// Whether the error of an answer can be known from finer meshes only.
 bool needs_finer_meshes(const HardRow& row) {
-  return is_certified(row) && std::isnan(*row.judged.numbers->error) &&
-         !std::isnan(*row.judged.numbers->uncertainty) && !has_given_grid(*row.scene) &&
-         std::isfinite(main_value(row.record));
+  return is_certified(row) && std::isnan(*row.judged.numbers->error) && !std::isnan(*row.judged.numbers->uncertainty) &&
+         !has_given_grid(*row.scene) && std::isfinite(main_value(row.record));
 }
 
 /// Whether a finer mesh may refuse the load that this one carries, since the mesh decides near the limit.
@@ -133,8 +130,8 @@ void judge_by_finer_records(HardRow& row, const SolveRecord& twice, const SolveR
   };
   const bool any_refused = twice.status == RunStatus::refused || four_times.status == RunStatus::refused;
   const bool is_refused = any_refused && is_at_limit(row.record);
-  const MeshReference reference = judge_by_finer(main_value(row.record), row.record.end.resolution.absolute,
-                                                 value_of(twice), value_of(four_times));
+  const MeshReference reference =
+      judge_by_finer(main_value(row.record), row.record.end.resolution.absolute, value_of(twice), value_of(four_times));
   const char* const none =
       is_refused ? "a finer mesh carries a little less than this load" : "a finer mesh has no answer";
   JudgedNumbers& numbers = *row.judged.numbers;
@@ -174,8 +171,7 @@ ComparedAnswer compare(const HardRow& row, const BesideMethod& method, const Sol
   return compare_answer(row.record, record);
 }
 
-void compare_methods(std::vector<HardRow>& rows, const std::vector<BesideMethod>& methods,
-                     const ProcessPool& pool) {
+void compare_methods(std::vector<HardRow>& rows, const std::vector<BesideMethod>& methods, const ProcessPool& pool) {
   for (const BesideMethod& method : methods) {
     std::vector<RunSpec> runs;
     pool.progress().begin(method.name);
@@ -266,12 +262,12 @@ std::vector<std::pair<std::string, std::string>> families_of(const HardResult& r
 }
 
 std::string methods_text(const HardResult& result) {
-  std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
-                                 "refused", "not converged", "other direction", "other answer");
+  std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees", "refused",
+                                 "not converged", "other direction", "other answer");
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
     const auto [agree, refuse, open, direction, answer] = result.method_counts(i);
-    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", result.methods[i], agree, refuse, open,
-                        direction, answer);
+    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", result.methods[i], agree, refuse, open, direction,
+                        answer);
   }
   return text;
 }
@@ -301,8 +297,7 @@ std::vector<Stage> hard_stages(const HardOptions& options) {
   return stages;
 }
 
-HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,
-                          const ProcessPool& pool) {
+HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
   pool.progress().begin(kScenes);
   HardResult result{.rows = solve_cases(cases, options.fields, pool), .methods = {}};
   pool.progress().begin(kEquivalent);
@@ -334,8 +329,8 @@ Json to_json(const HardResult& result) {
 }
 
 std::string hard_text(const HardResult& result) {
-  std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",
-                                 "not converged", "wrong");
+  std::string text =
+      fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused", "not converged", "wrong");
   const auto line = [&](const std::string& name, const std::string& family) {
     const auto [certain, refuse, open, false_answers] = result.counts(family);
     text += fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", name, certain, refuse, open, false_answers);
@@ -346,10 +341,9 @@ std::string hard_text(const HardResult& result) {
   for (const HardRow& row : result.rows) {
     const JudgedCase& judged = row.judged;
     if (judged.verdict != wrong && judged.verdict != not_converged) continue;
-    text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", to_string(judged.verdict),
-                        row.hard.family, row.hard.name, judged.reason, row.hard.run.scene.string());
-    for (const std::string& assignment : row.hard.run.overrides)
-      text += fmt::format(" --set '{}'", assignment);
+    text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", to_string(judged.verdict), row.hard.family,
+                        row.hard.name, judged.reason, row.hard.run.scene.string());
+    for (const std::string& assignment : row.hard.run.overrides) text += fmt::format(" --set '{}'", assignment);
     text += "\n";
   }
   return text;

@@ -27,8 +27,8 @@ struct HardRow {
   std::filesystem::path fields;  ///< of its answer; empty: none
   SolveRecord record;
   JudgedCase judged;
-  std::optional<solver::Scene> scene;                    ///< of certified cases
-  std::vector<std::pair<std::string, Number>> variants;  ///< variant_difference() by the variant's name
+  std::optional<solver::Scene> scene;                           ///< of certified cases
+  std::vector<std::pair<std::string, Number>> variants;         ///< variant_difference() by the variant's name
   std::vector<std::pair<std::string, ComparedAnswer>> methods;  ///< by the method's name
 };
 
@@ -48,8 +48,7 @@ std::vector<Stage> hard_stages(const HardOptions& options);
 
 /// Solves and judges. A certified answer becomes wrong where an equivalent scene has another one, or a finer
 /// mesh one beyond its uncertainty.
-HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options,
-                          const ProcessPool& pool);
+HardResult run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool);
 
 /// docs/schema/hard.schema.json
 Json to_json(const HardResult& result);

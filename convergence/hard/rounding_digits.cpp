@@ -98,15 +98,14 @@ Json to_json(const DigitsResult& result) {
 std::string digits_text(const DigitsResult& result) {
   std::string text = fmt::format("  {:18} {:>24} {:>7}   {}\n", "", "value", "digits", "95 % interval");
   for (const auto& [output, value, digits] : result.digits) {
-    text += fmt::format("  {:18} {:>24.17g} {:>7.1f}   {:.1f} to {:.1f}{}\n", output, value, digits.value,
-                        digits.low, digits.high, digits.high < 1.0 ? ", only rounding" : "");
+    text += fmt::format("  {:18} {:>24.17g} {:>7.1f}   {:.1f} to {:.1f}{}\n", output, value, digits.value, digits.low,
+                        digits.high, digits.high < 1.0 ? ", only rounding" : "");
   }
   if (result.status != RunStatus::converged) {
     text += fmt::format("  {}: {}\n", to_string(result.status), result.message);
   }
   if (result.not_converged != 0) {
-    text +=
-        fmt::format("  {} of {} samples did not converge\n", result.not_converged, result.options.samples);
+    text += fmt::format("  {} of {} samples did not converge\n", result.not_converged, result.options.samples);
   }
   return text;
 }

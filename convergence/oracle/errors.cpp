@@ -35,10 +35,9 @@ struct TractionNorms {
   Norms exact_at_centres, exact_averaged, at_centres, averaged, stick_edge, contact_edge, inside, outside;
 
   TractionNorms& operator+=(const TractionNorms& other) {
-    for (const auto member :
-         {&TractionNorms::exact_at_centres, &TractionNorms::exact_averaged, &TractionNorms::at_centres,
-          &TractionNorms::averaged, &TractionNorms::stick_edge, &TractionNorms::contact_edge,
-          &TractionNorms::inside, &TractionNorms::outside}) {
+    for (const auto member : {&TractionNorms::exact_at_centres, &TractionNorms::exact_averaged,
+                              &TractionNorms::at_centres, &TractionNorms::averaged, &TractionNorms::stick_edge,
+                              &TractionNorms::contact_edge, &TractionNorms::inside, &TractionNorms::outside}) {
       this->*member += other.*member;
     }
     return *this;
@@ -46,8 +45,7 @@ struct TractionNorms {
 };
 
 FieldError field_error(const Norms& difference, const Norms& exact) {
-  return {difference.sum / exact.sum, std::sqrt(difference.squares / exact.squares),
-          difference.max / exact.max};
+  return {difference.sum / exact.sum, std::sqrt(difference.squares / exact.squares), difference.max / exact.max};
 }
 
 /// The exact shear traction in an oracle's units, as a vector at a place measured from the axis; size: its
@@ -190,16 +188,13 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
       const Index j = k % images.columns();
       const Index cell = i * grid.n2 + j;
       const double radius = fields.radius[cell];
-      const auto is_within = [&](double distance, double edge) {
-        return std::abs(radius - edge) <= distance;
-      };
+      const auto is_within = [&](double distance, double edge) { return std::abs(radius - edge) <= distance; };
       const std::array<double, 2> centre{fields.traction[cell], fields.traction[cell + grid.cells()]};
       std::array<double, 2> mean = centre;
-      const bool near_edge =
-          is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius);
+      const bool near_edge = is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius);
       if (near_edge) {
-        mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.place.centre[0],
-                              grid.x2(j) - oracle.place.centre[1], beside_edges);
+        mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.place.centre[0], grid.x2(j) - oracle.place.centre[1],
+                              beside_edges);
       }
       Norms& region = slips && is_within(width, oracle.stick_radius) ? sum.stick_edge
                       : is_within(width, oracle.contact_radius)      ? sum.contact_edge
@@ -318,15 +313,13 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .moment = relative_error(solution.moment, oracle.moment),
       .moment_limit = relative_error(solution.moment_limit, oracle.friction.moment_limit),
       .stick_radius = relative_error(solution.stick_radius, oracle.stick_radius),
-      .stick_ratio =
-          relative_error(solution.stick_radius / solution.contact_radius, oracle.state.stick_ratio),
+      .stick_ratio = relative_error(solution.stick_radius / solution.contact_radius, oracle.state.stick_ratio),
       .displacement = relative_difference(solution.displacement, oracle.displacement),
       .dissipated = relative_error(solution.dissipated, oracle.dissipated),
       .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
       .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
       .peak_pressure = relative_error(solution.peak_pressure, oracle.normal.peak_pressure),
-      .traction =
-          fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
+      .traction = fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
       .sharpened = fields && oracle.shear ? sharpened_error(sharp.cells, solution, exact) : kUnknownField,
       .kept = sharp.kept,
       .pressure = fields ? pressure_error(solution.pressure, exact.pressure) : kUnknownField,

@@ -22,9 +22,8 @@ struct FieldError {
 /// Errors of a traction field, all relative to the exact field of the whole contact, so that the errors of
 /// the regions add up to `averaged` (l1; l2 in squares).
 struct TractionError {
-  FieldError at_centres;  ///< against the exact values at cell centres
-  FieldError
-      averaged;  ///< against exact averages over the cells, which differ where the traction has an edge
+  FieldError at_centres;    ///< against the exact values at cell centres
+  FieldError averaged;      ///< against exact averages over the cells, which differ where the traction has an edge
   FieldError stick_edge;    ///< within kEdgeBand cells of the stick radius
   FieldError contact_edge;  ///< within kEdgeBand cells of the contact radius, the stick edge's band excluded
   FieldError inside;        ///< the rest of the stick area
@@ -79,15 +78,14 @@ struct SharpenedCell {
   std::array<double, 2> traction;
 };
 
-/// A solution's fields where their square-root edges are read off, cell by cell in their order. A solve knows
-/// means: in the cells that the contact's edge or the stick front cuts they are off by h^(1/2). Towards the
-/// edge p^2 falls linearly, and towards the front, from inside, (f - |q|)^2 does, f the friction bound,
-/// whatever the contact's shape. So the quadratic that fits this square best in the whole cells beyond says
-/// what it is at the centres of the cut ones. All cells of an edge keep their numbers where the fit is
-/// doubtful: it changes their sum, though each is a mean; or it is further off, in whole cells that it leaves
-/// out, than what it changes. Cells keep theirs where too few whole cells are near, and at edges towards
-/// which the pressure rises (a punch's). Tractions keep their directions and stay within the bound of the
-/// pressure in their cell.
+/// A solution's fields where their square-root edges are read off, cell by cell in their order. A solve knows means: in
+/// the cells that the contact's edge or the stick front cuts they are off by h^(1/2). Towards the edge p^2 falls
+/// linearly, and towards the front, from inside, (f - |q|)^2 does, f the friction bound, whatever the contact's shape.
+/// So the quadratic that fits this square best in the whole cells beyond says what it is at the centres of the cut
+/// ones. All cells of an edge keep their numbers where the fit is doubtful: it changes their sum, though each is a
+/// mean; or it is further off, in whole cells that it leaves out, than what it changes. Cells keep theirs where too few
+/// whole cells are near, and at edges towards which the pressure rises (a punch's). Tractions keep their directions and
+/// stay within the bound of the pressure in their cell.
 struct Sharpened {
   std::vector<SharpenedCell> cells;
   std::string kept;  ///< which edges' cells keep their numbers, and why; empty: none

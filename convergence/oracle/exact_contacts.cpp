@@ -18,8 +18,7 @@ analytic::layered::Elastic elastic(const solver::Material& material) {
 
 analytic::layered::Body body(const solver::Material& material) {
   if (!material.coating) return {elastic(material)};
-  return {elastic(surface_material(material)),
-          analytic::layered::Coat{material.coating->thickness, elastic(material)}};
+  return {elastic(surface_material(material)), analytic::layered::Coat{material.coating->thickness, elastic(material)}};
 }
 
 std::optional<analytic::layered::Indenter> indenter(const solver::Surface& surface) {
@@ -76,8 +75,7 @@ std::optional<FrictionBound> find_friction_bound(const solver::FrictionLaw& law,
     case solver::FrictionKind::coulomb:
       return FrictionBound{std::move(pressure), by_coefficient};
     case solver::FrictionKind::tresca:
-      return FrictionBound{{&analytic::constant_bound_profile(), [](const analytic::Profile*) {}},
-                           law.shear_strength};
+      return FrictionBound{{&analytic::constant_bound_profile(), [](const analytic::Profile*) {}}, law.shear_strength};
     case solver::FrictionKind::capped:
       if (!hertz) return std::nullopt;
       return FrictionBound{analytic::capped_hertz_profile(std::min(1.0, law.shear_strength / by_coefficient)),
@@ -98,8 +96,7 @@ solver::Material surface_material(const solver::Material& body) {
 std::string coated_obstacle(const solver::Scene& scene) {
   const solver::Surface& surface = scene.surfaces.front();
   if (!indenter(surface))
-    return fmt::format("no exact solution is known here for shape = \"{}\" on a layer",
-                       to_string(surface.shape));
+    return fmt::format("no exact solution is known here for shape = \"{}\" on a layer", to_string(surface.shape));
   if (!scene.contact.friction.is_coulomb())
     return fmt::format("no exact solution is known here for friction_law = \"{}\" on a layer",
                        to_string(scene.contact.friction.kind));

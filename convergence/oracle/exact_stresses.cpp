@@ -11,8 +11,8 @@ namespace slipstick::convergence {
 namespace {
 
 /// Polar components, whose z points out of the body, in the axes of the scene.
-std::array<double, solver::kStresses> in_axes(const analytic::PressureStress& p,
-                                              const analytic::TorsionStress& t, double cosine, double sine) {
+std::array<double, solver::kStresses> in_axes(const analytic::PressureStress& p, const analytic::TorsionStress& t,
+                                              double cosine, double sine) {
   return {p.rr * cosine * cosine + p.tt * sine * sine - 2.0 * t.rt * cosine * sine,
           p.rr * sine * sine + p.tt * cosine * cosine + 2.0 * t.rt * cosine * sine,
           p.zz,
@@ -23,8 +23,7 @@ std::array<double, solver::kStresses> in_axes(const analytic::PressureStress& p,
 
 }  // namespace
 
-std::optional<ExactStresses> exact_stresses(const solver::Scene& scene, solver::Body body,
-                                            std::string& reason) {
+std::optional<ExactStresses> exact_stresses(const solver::Scene& scene, solver::Body body, std::string& reason) {
   const auto theory = exact_history(scene);
   std::optional<analytic::LoadingHistory> history;
   OracleAnswer answer;
@@ -38,8 +37,8 @@ std::optional<ExactStresses> exact_stresses(const solver::Scene& scene, solver::
     history->load_to(answer.oracle->state.moment_ratio);
   }
   const double sign = body == solver::Body::lower ? 1.0 : -1.0;
-  const auto at = [oracle = *answer.oracle, history = *history, sign](
-                      const std::vector<std::array<double, 3>>& points, double poisson) {
+  const auto at = [oracle = *answer.oracle, history = *history, sign](const std::vector<std::array<double, 3>>& points,
+                                                                      double poisson) {
     const NormalContact& normal = oracle.normal;
     const analytic::StressField pressed(analytic::LoadingHistory(*normal.profile), *normal.profile);
     const analytic::StressField twisted(history, *oracle.friction.bound);
@@ -72,8 +71,8 @@ FieldError stress_error(const solver::Scene& scene, const solver::Solution& solu
   for (int k = 0; k < kPoints; ++k) {
     const double radius = kReach * exact->contact_radius * std::sqrt((k + 0.5) / kPoints);
     const double angle = 2.0 * std::numbers::pi * k / (std::numbers::phi * std::numbers::phi);
-    points.push_back({exact->centre[0] + radius * std::cos(angle),
-                      exact->centre[1] + radius * std::sin(angle), kDepth * exact->contact_radius});
+    points.push_back({exact->centre[0] + radius * std::cos(angle), exact->centre[1] + radius * std::sin(angle),
+                      kDepth * exact->contact_radius});
   }
   const double poisson = (upper ? scene.upper : scene.lower).poisson_ratio;
   const auto right = exact->at(points, poisson);

@@ -28,8 +28,7 @@ Moduli moduli(const solver::Scene& scene) {
   const solver::Material upper = surface_material(scene.upper);
   const solver::Material lower = surface_material(scene.lower);
   const auto sum_of = [&](auto numerator) {
-    return numerator(upper.poisson_ratio) / upper.young_modulus +
-           numerator(lower.poisson_ratio) / lower.young_modulus;
+    return numerator(upper.poisson_ratio) / upper.young_modulus + numerator(lower.poisson_ratio) / lower.young_modulus;
   };
   return {.effective = 1.0 / sum_of([](double nu) { return 1.0 - nu * nu; }),
           .shear = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); })};
@@ -91,8 +90,8 @@ class Indentation {
     const double a = contact.contact_radius;
     oracle.friction.bound = bound.profile;
     oracle.friction.reference_bound = bound.reference;
-    oracle.friction.force = friction_.is_coulomb() ? friction_.coefficient * load
-                                                   : bound.profile->load() * bound.reference * a * a;
+    oracle.friction.force =
+        friction_.is_coulomb() ? friction_.coefficient * load : bound.profile->load() * bound.reference * a * a;
     oracle.friction.moment_limit = bound.profile->moment_limit() * oracle.friction.force * a;
     oracle.stick_radius = contact.contact_radius;
     oracle.state.stick_ratio = 1.0;
@@ -171,8 +170,8 @@ class TorsionHistory final : public ExactHistory {
     history_.load_to(sign * oracle.state.moment_ratio);
     dissipated_ = history_.state().dissipated;
     oracle.dissipated = dissipated_ * energy_unit();
-    oracle.shear = [scale = sign * oracle.friction.reference_bound, state = oracle.state,
-                    bound = oracle.friction.bound, a = oracle.contact_radius](double radius) {
+    oracle.shear = [scale = sign * oracle.friction.reference_bound, state = oracle.state, bound = oracle.friction.bound,
+                    a = oracle.contact_radius](double radius) {
       return scale * analytic::traction(state, radius / a, *bound);
     };
     for (double* const value : {&oracle.state.moment, &oracle.state.twist, &oracle.state.moment_ratio}) {
@@ -195,8 +194,8 @@ class TorsionHistory final : public ExactHistory {
                     .tangent_stiffness = state.tangent_stiffness};
     oracle.dissipated = (state.dissipated - dissipated_) * energy_unit();
     dissipated_ = state.dissipated;
-    oracle.shear = [scale = oracle.friction.reference_bound, history = history_, a = oracle.contact_radius](
-                       double radius) { return scale * history.traction(radius / a); };
+    oracle.shear = [scale = oracle.friction.reference_bound, history = history_,
+                    a = oracle.contact_radius](double radius) { return scale * history.traction(radius / a); };
     return in_units(oracle);
   }
 
@@ -220,8 +219,7 @@ class TorsionHistory final : public ExactHistory {
 class ForceHistory final : public ExactHistory {
  public:
   /// first_load: the scale of loads.
-  ForceHistory(Indentation indentation, double first_load, double exponent,
-               const std::array<double, 2>& direction)
+  ForceHistory(Indentation indentation, double first_load, double exponent, const std::array<double, 2>& direction)
       : indentation_(std::move(indentation)),
         direction_(direction),
         load_(first_load),
@@ -246,15 +244,14 @@ class ForceHistory final : public ExactHistory {
     const double length = unit / (indentation_.pair().shear * a);
     Oracle oracle = indentation_.pressed(*step.normal);
     oracle.force = step.force;
-    oracle.displacement = {state.displacement * length * direction_[0],
-                           state.displacement * length * direction_[1]};
+    oracle.displacement = {state.displacement * length * direction_[0], state.displacement * length * direction_[1]};
     oracle.stick_radius = state.stick_radius * a;
     oracle.state.stick_ratio = state.stick_radius / state.contact_radius;
     oracle.dissipated = (state.dissipated - dissipated_) * unit * length;
     dissipated_ = history_.state().dissipated;
     oracle.place.direction = direction_;
-    oracle.shear = [scale = indentation_.friction() * reference_.normal.reference_pressure,
-                    history = history_, a](double radius) { return scale * history.traction(radius / a); };
+    oracle.shear = [scale = indentation_.friction() * reference_.normal.reference_pressure, history = history_,
+                    a](double radius) { return scale * history.traction(radius / a); };
     return {oracle, ""};
   }
 
@@ -298,8 +295,7 @@ class FrictionalIndentation final : public ExactHistory {
     oracle.dissipated = unknown;
     if (full_) {  // shear has its part in the pressure
       oracle.relative_uncertainty = kSpenceUncertainty;
-      oracle.contact_radius = oracle.stick_radius = oracle.normal.approach = oracle.normal.peak_pressure =
-          unknown;
+      oracle.contact_radius = oracle.stick_radius = oracle.normal.approach = oracle.normal.peak_pressure = unknown;
       oracle.normal.reference_pressure = oracle.friction.moment_limit = unknown;
     }
     return {oracle, ""};
@@ -314,9 +310,7 @@ class FrictionalIndentation final : public ExactHistory {
 class PressedEllipse final : public ExactHistory {
  public:
   explicit PressedEllipse(const solver::Scene& scene)
-      : surface_(scene.surfaces.front()),
-        pair_(moduli(scene)),
-        friction_(scene.contact.friction.coefficient) {}
+      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.contact.friction.coefficient) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {
@@ -332,8 +326,8 @@ class PressedEllipse final : public ExactHistory {
                     .moment_deficit = 1.0 - std::abs(oracle.moment) / oracle.friction.moment_limit,
                     .stick_ratio = unknown,
                     .stick_complement = unknown,
-                    .twist = oracle.twist_angle * pair_.shear * oracle.contact_radius *
-                             oracle.contact_radius / (friction_ * *step.normal),
+                    .twist = oracle.twist_angle * pair_.shear * oracle.contact_radius * oracle.contact_radius /
+                             (friction_ * *step.normal),
                     .moment = oracle.moment / (friction_ * *step.normal * oracle.contact_radius),
                     .tangent_stiffness = unknown};
     oracle.only_normal =
@@ -395,8 +389,7 @@ std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene) {
 
 std::unique_ptr<ExactHistory> force_history(const solver::Scene& scene, double gap_exponent,
                                             const std::array<double, 2>& direction) {
-  return std::make_unique<ForceHistory>(Indentation(scene), *scene.steps.front().normal, gap_exponent,
-                                        direction);
+  return std::make_unique<ForceHistory>(Indentation(scene), *scene.steps.front().normal, gap_exponent, direction);
 }
 
 std::unique_ptr<ExactHistory> frictional_indentation(const solver::Scene& scene) {
@@ -407,8 +400,6 @@ std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene) {
   return std::make_unique<PressedEllipse>(scene);
 }
 
-std::unique_ptr<ExactHistory> no_theory(const std::string& reason) {
-  return std::make_unique<NoTheory>(reason);
-}
+std::unique_ptr<ExactHistory> no_theory(const std::string& reason) { return std::make_unique<NoTheory>(reason); }
 
 }  // namespace slipstick::convergence

@@ -38,14 +38,13 @@ LawContact law_contact(const solver::Scene& scene) {
   const bool is_sphere = scene.surfaces.front().shape == solver::Shape::sphere;
   return {.name = scene.name,
           .profile = answer.oracle->friction.bound,
-          .units = LawUnits{
-              .friction = scene.contact.friction.is_coulomb()
-                              ? scene.contact.friction.coefficient
-                              : answer.oracle->friction.force / *unloaded.steps.front().normal,
-              .normal_load = *unloaded.steps.front().normal,
-              .contact_radius = answer.oracle->contact_radius,
-              .shear_modulus = combined_shear_modulus(scene),
-              .sphere_radius = is_sphere ? std::optional(scene.surfaces.front().radius) : std::nullopt}};
+          .units = LawUnits{.friction = scene.contact.friction.is_coulomb()
+                                            ? scene.contact.friction.coefficient
+                                            : answer.oracle->friction.force / *unloaded.steps.front().normal,
+                            .normal_load = *unloaded.steps.front().normal,
+                            .contact_radius = answer.oracle->contact_radius,
+                            .shear_modulus = combined_shear_modulus(scene),
+                            .sphere_radius = is_sphere ? std::optional(scene.surfaces.front().radius) : std::nullopt}};
 }
 
 }  // namespace slipstick::convergence

@@ -36,8 +36,7 @@ std::string obstacle(const solver::Scene& scene) {
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
   if (law.is_frictionless()) return "without friction there is no traction";
   if (!law.map.empty()) return "the friction comes from a map (contact.friction_map)";
-  const bool any_shape =
-      law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
+  const bool any_shape = law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
   if ((any_shape && has_shape) || law.is_coulomb() || surface.shape == solver::Shape::sphere) return "";
   return fmt::format("no exact solution is known here for shape = \"{}\" under friction_law = \"{}\"",
                      to_string(surface.shape), to_string(law.kind));
@@ -48,9 +47,7 @@ bool without_torsion(const solver::Step& step) {
   return std::visit([](const auto& kind) { return kind.value == 0.0; }, load);
 }
 
-bool without_force(const solver::Step& step) {
-  return !step.displacement && step.force == std::array<double, 2>{};
-}
+bool without_force(const solver::Step& step) { return !step.displacement && step.force == std::array<double, 2>{}; }
 
 /// Two directions are one line where the sine between them is less: the rounding of two coordinates.
 constexpr double kSameLine = 1e-14;
@@ -95,12 +92,11 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
     return without_torsion(step) && without_force(step);
   });
   const bool growing =
-      scene.cycles == 1 && std::is_sorted(steps.begin(), steps.end(),
-                                          [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
+      scene.cycles == 1 &&
+      std::is_sorted(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
   if (!pressed_only || !growing || !shape || !shape->gap_exponent || !scene.contact.friction.is_coulomb()) {
-    return no_theory(
-        "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
+    return no_theory("the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
   }
   try {
     return frictional_indentation(scene);
@@ -156,22 +152,17 @@ std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
     if (std::all_of(steps.begin(), steps.end(), without_torsion)) return history_under_force(scene);
     return no_theory("no exact solution is known here for torsion together with a force");
   }
-  const bool constant_load = std::all_of(steps.begin(), steps.end(), [&](const solver::Step& step) {
-    return step.normal == steps.front().normal;
-  });
-  if (!constant_load)
-    return no_theory("no exact solution is known here for torsion while the normal load changes");
+  const bool constant_load = std::all_of(steps.begin(), steps.end(),
+                                         [&](const solver::Step& step) { return step.normal == steps.front().normal; });
+  if (!constant_load) return no_theory("no exact solution is known here for torsion while the normal load changes");
   try {
     return torsion_history(scene);
   } catch (const std::domain_error& error) {
-    const char* const on_layer =
-        is_coated(scene) ? "the contact on the layer is not one that is known here: " : "";
+    const char* const on_layer = is_coated(scene) ? "the contact on the layer is not one that is known here: " : "";
     return no_theory(on_layer + std::string(error.what()));
   }
 }
 
-OracleAnswer find_oracle(const solver::Scene& scene) {
-  return exact_history(scene)->advance(scene.steps.front());
-}
+OracleAnswer find_oracle(const solver::Scene& scene) { return exact_history(scene)->advance(scene.steps.front()); }
 
 }  // namespace slipstick::convergence

@@ -35,12 +35,11 @@ struct FrictionLimit {
   double moment_limit;           ///< N m
 };
 
-/// The exact answer for an axisymmetric scene, in the scene's units (SI): the normal contact of its indenter
-/// (Hertz, Love, Boussinesq, Sneddon, Ciavarella), in torsion about its own axis (Lubkin 1951; Jaeger 1995)
-/// or under a tangential force (Cattaneo 1938, Mindlin 1949; exact where nu = 0), or pressed with friction
-/// against another material (Goodman 1962, Spence 1968: only the stick ratio). For an ellipsoid the normal
-/// contact (Hertz 1882), its limit moment, and the loads and motions that the scene imposes. Unknown numbers
-/// are NaN.
+/// The exact answer for an axisymmetric scene, in the scene's units (SI): the normal contact of its indenter (Hertz,
+/// Love, Boussinesq, Sneddon, Ciavarella), in torsion about its own axis (Lubkin 1951; Jaeger 1995) or under a
+/// tangential force (Cattaneo 1938, Mindlin 1949; exact where nu = 0), or pressed with friction against another
+/// material (Goodman 1962, Spence 1968: only the stick ratio). For an ellipsoid the normal contact (Hertz 1882), its
+/// limit moment, and the loads and motions that the scene imposes. Unknown numbers are NaN.
 struct Oracle {
   ContactPlace place;
   NormalContact normal;

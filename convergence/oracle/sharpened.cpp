@@ -148,8 +148,7 @@ std::optional<Fit> fit_at(const Grid& grid, Index cell, const Depths& depth, int
 
 double root(double square) { return std::sqrt(std::max(0.0, square)); }
 
-/// An edge towards which the square of a field falls linearly, and the fits that say how far in its cut
-/// cells.
+/// An edge towards which the square of a field falls linearly, and the fits that say how far in its cut cells.
 class Edge {
  public:
   /// solved: the field, kept by reference.
@@ -191,13 +190,12 @@ class Edge {
       errors += std::pow(std::max(root(fit.value + off) - sharp, sharp - root(fit.value - off)), 2);
     }
     if (!(std::abs(more) <= kUnbalanced * sum))
-      return fmt::format("the fit changes the sum of its cells by {:.2g} %; allowed: {:.2g} %",
-                         100.0 * more / sum, 100.0 * kUnbalanced);
+      return fmt::format("the fit changes the sum of its cells by {:.2g} %; allowed: {:.2g} %", 100.0 * more / sum,
+                         100.0 * kUnbalanced);
     const double unpredicted = std::sqrt(errors / changes);
     if (!(unpredicted <= kUnpredicted))
-      return fmt::format(
-          "where the fit is tried out it is off by {:.2g} times what it changes; allowed: {:.2g}",
-          unpredicted, kUnpredicted);
+      return fmt::format("where the fit is tried out it is off by {:.2g} times what it changes; allowed: {:.2g}",
+                         unpredicted, kUnpredicted);
     return "";
   }
 
@@ -252,8 +250,7 @@ Sharpened sharpened(const solver::Solution& solution) {
   const double ring = solution.resolution.slip_width;
   const bool has_front = !law.factors && ring >= kNarrowestRing;
   Edge edge(p);
-  const ArrayXd missing =
-      ArrayXd::NullaryExpr(p.size(), [&](Index cell) { return law.bound(p, cell) - size(cell); });
+  const ArrayXd missing = ArrayXd::NullaryExpr(p.size(), [&](Index cell) { return law.bound(p, cell) - size(cell); });
   Edge front(missing);
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const auto k = static_cast<std::size_t>(cell);
@@ -269,13 +266,9 @@ Sharpened sharpened(const solver::Solution& solution) {
     found.kept += fmt::format("{}{}: {}", found.kept.empty() ? "" : "; ", name, why);
     at.keep();
   };
-  const std::string narrow =
-      fmt::format("a slip ring of {:.2g} cells; allowed: {:.2g}", ring, kNarrowestRing);
+  const std::string narrow = fmt::format("a slip ring of {:.2g} cells; allowed: {:.2g}", ring, kNarrowestRing);
   keep(edge, "contact's edge", has_root ? edge.doubt() : "the pressure does not fall towards it");
-  keep(front, "stick front",
-       has_front || ring == 0.0 ? front.doubt()
-       : law.factors            ? "on a friction map"
-                                : narrow);
+  keep(front, "stick front", has_front || ring == 0.0 ? front.doubt() : law.factors ? "on a friction map" : narrow);
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const auto at_edge = p[cell] > 0.0 ? edge.at(cell) : std::nullopt;
     const auto at_front = front.at(cell);

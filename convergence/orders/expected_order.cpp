@@ -35,14 +35,12 @@ ExpectedOrder of_field(const std::string& quantity, Edge edge) {
     return {NAN, "a traction like d^(-1/2) at the edge has no finite norm of this kind"};
   }
   if (edge == Edge::jump) {
-    if (is_norm(quantity, "l1"))
-      return {1.0, "the traction ends at its full strength in cells that the edge cuts"};
+    if (is_norm(quantity, "l1")) return {1.0, "the traction ends at its full strength in cells that the edge cuts"};
     if (is_norm(quantity, "l2")) return {0.5, "off by the strength itself in the cells that the edge cuts"};
     return {NAN, "the cell that the edge cuts is off by the strength itself on every mesh"};
   }
   if (is_norm(quantity, "l1")) {
-    return {1.5,
-            "tractions have square-root edges: off by h^(1/2) in a band of width h, and by h^2 elsewhere"};
+    return {1.5, "tractions have square-root edges: off by h^(1/2) in a band of width h, and by h^2 elsewhere"};
   }
   if (is_norm(quantity, "l2")) {
     return {1.0, "off by h^(1/2) in a band of width h along the edges, whose square sums to h^2"};
@@ -55,27 +53,21 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
     return {1.0, "an edge found by counting whole cells is known to a part of one"};
   }
   if (quantity.starts_with("stick_")) {
-    return {
-        1.0,
-        "determined from the slip in at most 24 cells next to the edge: for a wider ring its error is a part "
-        "of a cell; on coarser meshes the error falls faster"};
+    return {1.0,
+            "determined from the slip in at most 24 cells next to the edge: for a wider ring its error is a part "
+            "of a cell; on coarser meshes the error falls faster"};
   }
   if (edge_of(scene) == Edge::jump) {
-    return {1.0,
-            "the strength acts as far as the outermost cells reach, a part of a cell from the true edge"};
+    return {1.0, "the strength acts as far as the outermost cells reach, a part of a cell from the true edge"};
   }
   if (edge_of(scene) == Edge::singular) {
-    return {1.0,
-            "the singular edge stands where the outermost cells end, a part of a cell from the true one"};
+    return {1.0, "the singular edge stands where the outermost cells end, a part of a cell from the true one"};
   }
   if (scene.contact.pressure == PressureModel::hertz_averaged) {
-    return {2.0,
-            "averaging over cells keeps the load and widens the pressure by h^2/12 in its second moments"};
+    return {2.0, "averaging over cells keeps the load and widens the pressure by h^2/12 in its second moments"};
   }
   if (scene.contact.pressure == PressureModel::hertz) {
-    return {
-        2.0,
-        "a pressure sampled at the centres misses loads by h^2, up or down as the edge lies between them"};
+    return {2.0, "a pressure sampled at the centres misses loads by h^2, up or down as the edge lies between them"};
   }
   return {2.0,
           "centres are the points where constant cells err by h^2; the edges' h^(1/2) in a band of width h "
@@ -85,32 +77,30 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
 }  // namespace
 
 const std::vector<ErrorQuantity>& error_quantities() {
-  static const std::vector<ErrorQuantity> quantities{
-      {"twist_error", "twist"},
-      {"moment_error", "moment"},
-      {"moment_limit_error", "limit moment"},
-      {"displacement_error", "displacement"},
-      {"stick_radius_error", "stick radius"},
-      {"stick_ratio_error", "stick ratio"},
-      {"stick_radius_counted_error", "stick radius, counted"},
-      {"contact_radius_error", "contact radius"},
-      {"peak_pressure_error", "peak pressure"},
-      {"dissipated_error", "energy lost"},
-      {"traction_error.l1", "traction L1"},
-      {"traction_error.l2", "traction L2"},
-      {"traction_error.max", "traction max"},
-      {"traction_error.averaged.l1", "traction L1, cell averages"},
-      {"traction_error.averaged.l2", "traction L2, cell averages"},
-      {"pressure_error.l1", "pressure L1"},
-      {"pressure_error.l2", "pressure L2"},
-      {"stress_error.max", "stresses, 0.4a deep"}};
+  static const std::vector<ErrorQuantity> quantities{{"twist_error", "twist"},
+                                                     {"moment_error", "moment"},
+                                                     {"moment_limit_error", "limit moment"},
+                                                     {"displacement_error", "displacement"},
+                                                     {"stick_radius_error", "stick radius"},
+                                                     {"stick_ratio_error", "stick ratio"},
+                                                     {"stick_radius_counted_error", "stick radius, counted"},
+                                                     {"contact_radius_error", "contact radius"},
+                                                     {"peak_pressure_error", "peak pressure"},
+                                                     {"dissipated_error", "energy lost"},
+                                                     {"traction_error.l1", "traction L1"},
+                                                     {"traction_error.l2", "traction L2"},
+                                                     {"traction_error.max", "traction max"},
+                                                     {"traction_error.averaged.l1", "traction L1, cell averages"},
+                                                     {"traction_error.averaged.l2", "traction L2, cell averages"},
+                                                     {"pressure_error.l1", "pressure L1"},
+                                                     {"pressure_error.l2", "pressure L2"},
+                                                     {"stress_error.max", "stresses, 0.4a deep"}};
   return quantities;
 }
 
 const std::vector<std::string>& value_quantities() {
-  static const std::vector<std::string> paths{"twist_angle",  "moment",         "moment_limit",
-                                              "stick_radius", "contact_radius", "elastic_energy",
-                                              "dissipated"};
+  static const std::vector<std::string> paths{"twist_angle",    "moment",         "moment_limit", "stick_radius",
+                                              "contact_radius", "elastic_energy", "dissipated"};
   return paths;
 }
 

@@ -7,8 +7,7 @@
 
 namespace slipstick::convergence {
 
-/// The order in the cell size with which an error falls, and the reason in one sentence; NaN where theory
-/// gives none.
+/// The order in the cell size with which an error falls, and the reason in one sentence; NaN where theory gives none.
 struct ExpectedOrder {
   double value;
   std::string why;

@@ -27,9 +27,7 @@ constexpr double kTrustedOrder = 2.1;
 constexpr double kTrusted = 1.25;  // Roache's safety factors
 constexpr double kCautious = 3.0;
 
-double safety_factor(double order) {
-  return order >= kMinOrder && order <= kTrustedOrder ? kTrusted : kCautious;
-}
+double safety_factor(double order) { return order >= kMinOrder && order <= kTrustedOrder ? kTrusted : kCautious; }
 
 double range(const Meshes& meshes) {
   const auto [low, high] = std::ranges::minmax(meshes, {}, &MeshSample::value);
@@ -42,8 +40,7 @@ struct Extrapolation {
   double left;  ///< distance of the finest value from the limit, signed
 };
 
-/// The order p of values = limit + C size^p with the given ratio (coarse - middle)/(middle - fine), which
-/// grows with p.
+/// The order p of values = limit + C size^p with the given ratio (coarse - middle)/(middle - fine), which grows with p.
 Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, const MeshSample& fine) {
   const double ratio = (coarse.value - middle.value) / (middle.value - fine.value);
   const double coarser = std::log(coarse.size / middle.size);
@@ -83,9 +80,8 @@ Order judged(Order order, const Meshes& meshes, double expected, const std::stri
     order.why = "the values turn back from mesh to mesh";
   } else if (!(std::abs(finest.value - before.value) > noise)) {
     order.verdict = OrderVerdict::floor;
-    order.why =
-        fmt::format("the values of the two finest meshes differ by {:.2g}, which noise and scatter hide",
-                    std::abs(finest.value - before.value));
+    order.why = fmt::format("the values of the two finest meshes differ by {:.2g}, which noise and scatter hide",
+                            std::abs(finest.value - before.value));
   } else if (std::isnan(order.value)) {
     order.why = "the changes from mesh to mesh do not shrink like a power of the size";
   } else if (const std::string falls = fall_of_order(meshes);
@@ -159,9 +155,7 @@ std::optional<PowerFit> fit_with_order(const Meshes& meshes, bool weighted) {
   return distance > close ? std::optional(best) : std::nullopt;
 }
 
-PowerFit better(const PowerFit& one, const PowerFit& other) {
-  return other.deviation < one.deviation ? other : one;
-}
+PowerFit better(const PowerFit& one, const PowerFit& other) { return other.deviation < one.deviation ? other : one; }
 
 PowerFit best_of(const Meshes& meshes, const std::vector<std::vector<double>>& candidates) {
   PowerFit best = power_fit(meshes, candidates.front(), false);
@@ -234,8 +228,7 @@ struct Extrapolated {
   double doubt;  ///< noise and scatter of the meshes
 };
 
-Extrapolated extrapolated(const Meshes& all, std::size_t end, const std::vector<double>& powers,
-                          std::size_t count) {
+Extrapolated extrapolated(const Meshes& all, std::size_t end, const std::vector<double>& powers, std::size_t count) {
   const auto last = all.begin() + static_cast<std::ptrdiff_t>(end);
   const Meshes meshes(last - static_cast<std::ptrdiff_t>(count + 1), last);
   const VectorXd weights = extrapolation_weights(meshes, powers);
@@ -264,8 +257,7 @@ double grid_uncertainty(const PowerFit& fit, double order, const Meshes& meshes)
   return kCautious * fit.deviation / mean_change * (std::abs(fitted) + fit.deviation + residual);
 }
 
-/// An extrapolation from three meshes, with the uncertainties of order and limit by the uncertainty of each
-/// value.
+/// An extrapolation from three meshes, with the uncertainties of order and limit by the uncertainty of each value.
 struct Propagated {
   Extrapolation found;
   double order_uncertainty;
@@ -332,8 +324,7 @@ Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
           fmt::format("Richardson with h^{:.3g}", found.order)};
 }
 
-Limit expansion_limit(const std::vector<MeshSample>& values, const std::vector<double>& powers,
-                      double expected) {
+Limit expansion_limit(const std::vector<MeshSample>& values, const std::vector<double>& powers, double expected) {
   constexpr double kAgreement = 2.0;  // the uncertainty over the distance of successive extrapolations
   const auto [meshes, left_out] = coarsest_first(values);
   const std::size_t all = meshes.size();

@@ -40,14 +40,12 @@ Limit least_squares_limit(const std::vector<MeshSample>& values, double expected
 /// meshes, the finest value and three times the distance that the expected order gives (Roache 1998).
 Limit richardson_limit(const std::vector<MeshSample>& values, double expected);
 
-/// Extrapolation of values whose error is a sum of known powers of the size, as where cells end at a punch's
-/// edges (aligned_edge_powers()): with the first `powers`, as many as leave one mesh over, through the finest
-/// meshes. The uncertainty is twice the larger of its distances from the same extrapolation without the
-/// finest mesh and from the extrapolation with one power less, plus the effect of noise and scatter: 4 of 600
-/// made sequences were off by more, whose corners had other powers (1 + 2 alpha from 1.5 to 1.9). The order
-/// is that of value - limit, by fit_order(). Fewer than three meshes: least_squares_limit(). Throws as
-/// coarsest_first().
-Limit expansion_limit(const std::vector<MeshSample>& values, const std::vector<double>& powers,
-                      double expected);
+/// Extrapolation of values whose error is a sum of known powers of the size, as where cells end at a punch's edges
+/// (aligned_edge_powers()): with the first `powers`, as many as leave one mesh over, through the finest meshes. The
+/// uncertainty is twice the larger of its distances from the same extrapolation without the finest mesh and from the
+/// extrapolation with one power less, plus the effect of noise and scatter: 4 of 600 made sequences were off by more,
+/// whose corners had other powers (1 + 2 alpha from 1.5 to 1.9). The order is that of value - limit, by fit_order().
+/// Fewer than three meshes: least_squares_limit(). Throws as coarsest_first().
+Limit expansion_limit(const std::vector<MeshSample>& values, const std::vector<double>& powers, double expected);
 
 }  // namespace slipstick::convergence

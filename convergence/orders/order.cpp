@@ -20,19 +20,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Meshes = std::vector<MeshSample>;
 
-Order no_order(OrderVerdict verdict, std::string why) {
-  return {kNaN, kNaN, kNaN, kNaN, verdict, std::move(why), {}};
-}
+Order no_order(OrderVerdict verdict, std::string why) { return {kNaN, kNaN, kNaN, kNaN, verdict, std::move(why), {}}; }
 
-/// Standard errors of log |error| as the spread gives them, and the grids that they rest on beyond one a
-/// mesh.
+/// Standard errors of log |error| as the spread gives them, and the grids that they rest on beyond one a mesh.
 struct Scatter {
   ArrayXd errors;  ///< empty: unknown
   double freedom = 0.0;
 };
 
-/// The spread of a few grids is uncertain, so half of the variance is the mean of all meshes, relative to the
-/// errors.
+/// The spread of a few grids is uncertain, so half of the variance is the mean of all meshes, relative to the errors.
 Scatter scatter(const Meshes& meshes) {
   const auto count = static_cast<Eigen::Index>(meshes.size());
   ArrayXd own(count);
@@ -115,9 +111,8 @@ bool stands_still(const Meshes& meshes, double expected) {
 
 /// The meshes from the last change of sign on.
 Meshes of_one_sign(const Meshes& meshes) {
-  const auto opposite = std::find_if(meshes.rbegin(), meshes.rend(), [&](const MeshSample& mesh) {
-    return mesh.value * meshes.back().value < 0.0;
-  });
+  const auto opposite = std::find_if(meshes.rbegin(), meshes.rend(),
+                                     [&](const MeshSample& mesh) { return mesh.value * meshes.back().value < 0.0; });
   return {opposite.base(), meshes.end()};
 }
 
@@ -137,8 +132,7 @@ Meshes magnitudes(Meshes errors) {
 }
 
 /// The reason against a power law, before any interval is looked at; empty: none.
-std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const Meshes& all,
-                                              double expected) {
+std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const Meshes& all, double expected) {
   const MeshSample& finest = all.back();
   if (!is_distinguished(finest)) {
     return {OrderVerdict::floor,
@@ -190,8 +184,7 @@ std::string flaw(const MeshSample& sample) {
 }  // namespace
 
 std::string to_string(OrderVerdict verdict) {
-  constexpr std::array kWords{"asymptotic",  "preasymptotic", "superconvergent",
-                              "oscillatory", "floor",         "too_few"};
+  constexpr std::array kWords{"asymptotic", "preasymptotic", "superconvergent", "oscillatory", "floor", "too_few"};
   return kWords.at(static_cast<std::size_t>(verdict));
 }
 
@@ -216,9 +209,7 @@ MeshSequence coarsest_first(const std::vector<MeshSample>& samples) {
 
 double standard_error(const MeshSample& sample) { return sample.spread / std::sqrt(sample.grids); }
 
-double uncertainty(const MeshSample& sample) {
-  return sample.noise + kBelievedScatter * standard_error(sample);
-}
+double uncertainty(const MeshSample& sample) { return sample.noise + kBelievedScatter * standard_error(sample); }
 
 double resolution(const MeshSample& sample) {
   return std::max(kAboveNoise * sample.noise, kBelievedScatter * standard_error(sample));
@@ -257,8 +248,7 @@ Order judged_by_interval(Order order, double expected) {
     order.verdict = OrderVerdict::superconvergent;
     order.why = fmt::format("{} lies above the expected {:.4g}", in_words(order), expected);
   } else if (!(half <= kWidestHalf)) {
-    order.why =
-        fmt::format("{} is too uncertain to compare with the expected {:.4g}", in_words(order), expected);
+    order.why = fmt::format("{} is too uncertain to compare with the expected {:.4g}", in_words(order), expected);
   } else if (!(order.high >= expected - kOrderMargin)) {
     order.why = fmt::format("{} lies below the expected {:.4g}", in_words(order), expected);
   } else {
@@ -278,8 +268,7 @@ Order fit_order(const std::vector<MeshSample>& errors, double expected) {
   const std::size_t above = distinguished.size();
   distinguished = past_change_of_sign(distinguished);
   if (distinguished.size() < above) {
-    also = fmt::format("; {} coarser, with errors of the other sign, left out{}",
-                       above - distinguished.size(), also);
+    also = fmt::format("; {} coarser, with errors of the other sign, left out{}", above - distinguished.size(), also);
   }
   const auto [verdict, reason] = obstacle(distinguished, all, expected);
   if (distinguished.size() < kMinMeshes) {

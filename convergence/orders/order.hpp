@@ -6,8 +6,7 @@
 
 namespace slipstick::convergence {
 
-/// A quantity on one mesh, or on several grids of about the same cell size that lie differently under the
-/// contact.
+/// A quantity on one mesh, or on several grids of about the same cell size that lie differently under the contact.
 struct MeshSample {
   double size;          ///< cell size; only ratios matter
   double value;         ///< the quantity itself, or its signed error; mean over the grids

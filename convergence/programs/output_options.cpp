@@ -27,9 +27,7 @@ constexpr std::array<std::string_view, 15> kOutputs{
 /// Prefix of a file's name in `exact --profile`.
 constexpr std::string_view kProfileFile = "file:";
 
-bool is_output(const CLI::Option& option) {
-  return std::ranges::find(kOutputs, option.get_name()) != kOutputs.end();
-}
+bool is_output(const CLI::Option& option) { return std::ranges::find(kOutputs, option.get_name()) != kOutputs.end(); }
 
 bool is_same_file(const fs::path& one, const fs::path& other) {
   std::error_code error;
@@ -69,8 +67,7 @@ void add_option_names(const CLI::App& command, std::vector<std::string>& names) 
 
 }  // namespace
 
-void require_input_kept(const std::string& option, const std::string& output,
-                        const std::vector<fs::path>& inputs) {
+void require_input_kept(const std::string& option, const std::string& output, const std::vector<fs::path>& inputs) {
   const auto same = [&](const fs::path& input) { return is_same_file(input, output); };
   const auto overwritten = std::ranges::find_if(inputs, same);
   if (overwritten == inputs.end()) return;
@@ -115,8 +112,7 @@ void require_command(const CLI::App& app, int argc, const char* const* argv) {
 
 void require_known_options(const CLI::App& app, int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "";
-  const auto subcommands =
-      app.get_subcommands([&](const CLI::App* each) { return each->get_name() == first; });
+  const auto subcommands = app.get_subcommands([&](const CLI::App* each) { return each->get_name() == first; });
   const CLI::App* const command = subcommands.empty() ? &app : subcommands.front();
   std::vector<std::string> known;
   add_option_names(*command, known);
@@ -130,8 +126,7 @@ void require_known_options(const CLI::App& app, int argc, const char* const* arg
     const std::string nearest = solver::nearest_word("--" + name, known);
     unknown.push_back(fmt::format("{}: unknown option; the nearest is {}", option, nearest));
   }
-  if (!unknown.empty())
-    throw solver::InputError(command->get_name(), fmt::format("{}", fmt::join(unknown, "\n  ")));
+  if (!unknown.empty()) throw solver::InputError(command->get_name(), fmt::format("{}", fmt::join(unknown, "\n  ")));
 }
 
 }  // namespace slipstick::convergence

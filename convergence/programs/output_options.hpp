@@ -30,8 +30,7 @@ auto running(const CLI::App* command, const std::shared_ptr<Request>& request, R
   return [=](std::ostream& text, auto& result) { return run(*command, *request, text, result); };
 }
 
-/// Throws InputError for a first word that is neither an option nor a command, naming the nearest command of
-/// --help.
+/// Throws InputError for a first word that is neither an option nor a command, naming the nearest command of --help.
 void require_command(const CLI::App& app, int argc, const char* const* argv);
 
 /// Throws InputError that names all options of the line that its command does not have, each with the nearest

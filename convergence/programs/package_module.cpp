@@ -20,9 +20,8 @@ namespace {
 /// installation, in the program's folder in a build.
 fs::path package_folder() {
   const fs::path folder = own_program_file().parent_path();
-  for (const fs::path& candidate :
-       {folder.parent_path().parent_path(), folder.parent_path() / "share" / "slipstick" / "python",
-        folder / "python"}) {
+  for (const fs::path& candidate : {folder.parent_path().parent_path(),
+                                    folder.parent_path() / "share" / "slipstick" / "python", folder / "python"}) {
     if (fs::exists(candidate / "slipstick" / "_native" / "libslipstick.so")) return candidate;
   }
   throw std::runtime_error(
@@ -61,8 +60,7 @@ ModuleAnswer run_package_module(const std::string& module, const Json& request) 
   }
   const ProgramEnd end = program.wait();
   if (end.code != 0) {
-    throw std::runtime_error(
-        fmt::format("{} of the Python package failed ({} {})", module, python, end.trouble));
+    throw std::runtime_error(fmt::format("{} of the Python package failed ({} {})", module, python, end.trouble));
   }
   Json answer = Json::parse(end.output);
   if (answer.contains("error")) throw std::invalid_argument(answer["error"].get<std::string>());
@@ -73,8 +71,7 @@ ModuleAnswer run_package_module(const std::string& module, const Json& request) 
                     "apt-get install python3-{1}; elsewhere: {0} -m pip install {1}",
                     python, name.substr(0, name.find('.'))));
   }
-  ModuleAnswer result{
-      answer.value("exit_code", 0), answer.value("text", ""), std::move(answer["result"]), {}};
+  ModuleAnswer result{answer.value("exit_code", 0), answer.value("text", ""), std::move(answer["result"]), {}};
   for (const char* taken : {"exit_code", "text", "result"}) answer.erase(taken);
   result.rest = std::move(answer);
   return result;

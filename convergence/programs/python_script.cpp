@@ -24,8 +24,7 @@ fs::path project_file(const fs::path& relative) {
   return !program.empty() && fs::exists(installed) ? installed : fs::path(SLIPSTICK_SOURCE_DIR) / relative;
 }
 
-void run_report_script(const std::string& script, const std::vector<std::string>& arguments,
-                       const std::string& done) {
+void run_report_script(const std::string& script, const std::vector<std::string>& arguments, const std::string& done) {
   const std::string python = python_interpreter();
   // -E ignores PYTHONPATH and PYTHONHOME; the script's folder replaces the working folder.
   constexpr const char* kRunScript =
@@ -35,8 +34,7 @@ void run_report_script(const std::string& script, const std::vector<std::string>
   words.insert(words.end(), arguments.begin(), arguments.end());
   const ProgramEnd end = run_program(words, {.tied_by = own_program()});
   if (end.code != 0) {
-    throw std::runtime_error(
-        fmt::format("{}, but drawing failed ({} {} {})", done, python, script, end.trouble));
+    throw std::runtime_error(fmt::format("{}, but drawing failed ({} {} {})", done, python, script, end.trouble));
   }
 }
 
@@ -51,13 +49,11 @@ void require_figure_format(const fs::path& figure, const std::string& option) {
 void draw_solve(const fs::path& figure, const Json& result, const fs::path& cells) {
   const fs::path json = cells.parent_path() / "result.json";
   solver::write_whole_file(json, json_text(result));
-  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, cells},
-                    "the result is complete");
+  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, cells}, "the result is complete");
 }
 
 void draw_stresses(const fs::path& figure, const fs::path& volume) {
-  run_report_script("stress_figure.py", {"--output=" + figure.string(), "--", volume},
-                    "the volume is complete");
+  run_report_script("stress_figure.py", {"--output=" + figure.string(), "--", volume}, "the volume is complete");
 }
 
 void draw_study(const fs::path& figure, const Json& result) {

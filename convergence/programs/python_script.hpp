@@ -14,8 +14,7 @@ std::filesystem::path project_file(const std::filesystem::path& relative);
 
 /// Runs a script of reports/ with python_interpreter() and waits. Throws std::runtime_error if the script
 /// fails; the message begins with `done`, the work that is complete.
-void run_report_script(const std::string& script, const std::vector<std::string>& arguments,
-                       const std::string& done);
+void run_report_script(const std::string& script, const std::vector<std::string>& arguments, const std::string& done);
 
 /// Throws InputError, which names the option, unless a figure can have this ending and its folder exists.
 void require_figure_format(const std::filesystem::path& figure, const std::string& option = "--figure");

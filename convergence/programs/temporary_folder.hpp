@@ -18,8 +18,7 @@ namespace slipstick::convergence {
 class TemporaryFolder {
  public:
   TemporaryFolder()
-      : path_(make()),
-        remover_({"setsid", "sh", "-c", "read -r end; rm -rf -- \"$0\"", path_}, {.fed = true}) {}
+      : path_(make()), remover_({"setsid", "sh", "-c", "read -r end; rm -rf -- \"$0\"", path_}, {.fed = true}) {}
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);

@@ -64,14 +64,13 @@ Json equation_5_digits() {
     const double complement = std::pow(10.0, -0.25 - 0.15 * i);
     const double c = 1.0 - complement;
     const double exact = analytic::from_stick_ratio(c).moment;
-    rows.push_back({{"stick_complement", complement},
-                    {"relative_error", std::abs(analytic::paper::eq5_moment(c) / exact - 1.0)}});
+    rows.push_back(
+        {{"stick_complement", complement}, {"relative_error", std::abs(analytic::paper::eq5_moment(c) / exact - 1.0)}});
   }
   return rows;
 }
 
-/// One load: the twist by each law, its error, and the moment that a discrete element code has at the exact
-/// twist.
+/// One load: the twist by each law, its error, and the moment that a discrete element code has at the exact twist.
 Json approximation_row(double load) {
   const TorsionState state = analytic::from_moment_ratio(load);
   Json row{{"moment_ratio", load}, {"twist", state.twist}, {"moment", state.moment}};
@@ -142,13 +141,9 @@ constexpr double kPoisson = 0.3;  // of the sphere that yields
 
 Json yield_row(double load, double friction) {
   const TorsionState state = analytic::from_moment_ratio(load);
-  const analytic::LargestStress found =
-      analytic::largest_stress({state, analytic::hertz_profile()}, &analytic::Severity::von_mises, friction,
-                               kPoisson, state.stick_ratio);
-  return {{"moment_ratio", load},
-          {"von_mises", found.value},
-          {"radius", found.at.radius},
-          {"depth", found.at.depth}};
+  const analytic::LargestStress found = analytic::largest_stress(
+      {state, analytic::hertz_profile()}, &analytic::Severity::von_mises, friction, kPoisson, state.stick_ratio);
+  return {{"moment_ratio", load}, {"von_mises", found.value}, {"radius", found.at.radius}, {"depth", found.at.depth}};
 }
 
 bool at_surface(const Json& yield_row) { return yield_row["depth"] == 0.0; }
@@ -211,9 +206,8 @@ std::string jump_at_stick_radius() {
   const double c = 0.5;
   const double inside = paper::eq1_printed(c, std::nextafter(c, 0.0));
   const double outside = paper::eq1_printed(c, std::nextafter(c, 1.0));
-  return fmt::format(
-      "as printed, q jumps by a factor {:.6f} at r = aₛ (here aₛ/a = 0.5); with 2/π it is continuous",
-      inside / outside);
+  return fmt::format("as printed, q jumps by a factor {:.6f} at r = aₛ (here aₛ/a = 0.5); with 2/π it is continuous",
+                     inside / outside);
 }
 
 std::string equation_7_error() {
@@ -235,8 +229,7 @@ std::string equation_5_cancellation() {
     const analytic::TorsionState state = analytic::from_stick_complement(complement);
     text += fmt::format(
         "{}{:.1e} at aₛ/a = 1 − {:g}", std::exchange(separator, ", "),
-        std::abs(paper::eq5_moment(state.stick_ratio) / analytic::from_stick_ratio(state.stick_ratio).moment -
-                 1.0),
+        std::abs(paper::eq5_moment(state.stick_ratio) / analytic::from_stick_ratio(state.stick_ratio).moment - 1.0),
         complement);
   }
   return text;
@@ -244,9 +237,9 @@ std::string equation_5_cancellation() {
 
 std::string frozen_directions(const Json& circle, const std::vector<Json>& ellipses) {
   const auto evidence = [](const Json& result) {
-    return fmt::format("{:.2g}° (gap/energy {:.1e}) at {} × {} cells",
-                       number_at(result, "slip_direction.mean"), number_at(result, "certificate.gap"),
-                       number_at(result, "cells[0]"), number_at(result, "cells[1]"));
+    return fmt::format("{:.2g}° (gap/energy {:.1e}) at {} × {} cells", number_at(result, "slip_direction.mean"),
+                       number_at(result, "certificate.gap"), number_at(result, "cells[0]"),
+                       number_at(result, "cells[1]"));
   };
   std::string text =
       "at 0.9 of the limit, traction is off the slip's direction, in the mean, on a circular contact by " +
@@ -276,11 +269,9 @@ Json exact_curves() {
 Json errata(const Json& circle, const std::vector<Json>& ellipses) {
   return {
       erratum("(1), first branch", "factor 3μW/(2πa²)", "that factor times 2/π", jump_at_stick_radius()),
-      erratum("(5)", "a closed form", "right, but its terms cancel as aₛ/a approaches 1",
-              equation_5_cancellation()),
+      erratum("(5)", "a closed form", "right, but its terms cancel as aₛ/a approaches 1", equation_5_cancellation()),
       erratum("(7)", "an equality", "an approximation for small moments", equation_7_error()),
-      erratum("(8), (9), (13)–(16), (24), (25)", "x₂ and x₁ with equal signs",
-              "the rotation field is (−x₂, x₁)",
+      erratum("(8), (9), (13)–(16), (24), (25)", "x₂ and x₁ with equal signs", "the rotation field is (−x₂, x₁)",
               "with equal signs the field is (x₂, x₁), a pure shear without any rotation"),
       erratum("(16), (25)", "a denominator without a sum", "the sum of x₁² + x₂² over the stick area",
               "as printed, the denominator belongs to no particular cell and the dimensions do not match"),

@@ -21,20 +21,15 @@ void set(Json& json, const std::string& key, const std::optional<Part>& part) {
 
 Json to_json(const SceneDescription& scene) {
   const SceneDescription::Gap& gap = scene.gap;
-  return {{"name", scene.name},
-          {"text", scene.text},
-          {"summary", scene.summary},
-          {"gap",
-           {{"x1", gap.x1},
-            {"along_1", gap.along_1},
-            {"x2", gap.x2},
-            {"along_2", gap.along_2},
-            {"map", gap.map}}}};
+  return {
+      {"name", scene.name},
+      {"text", scene.text},
+      {"summary", scene.summary},
+      {"gap", {{"x1", gap.x1}, {"along_1", gap.along_1}, {"x2", gap.x2}, {"along_2", gap.along_2}, {"map", gap.map}}}};
 }
 
 Json to_json(const PageNumber& row) {
-  Json json{
-      {"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
+  Json json{{"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
   set_numbers(json, {{"reference", row.reference},
                      {"error", row.error},
                      {"mesh", row.mesh},
@@ -44,10 +39,7 @@ Json to_json(const PageNumber& row) {
 }
 
 Json to_json(const CostPoint& point) {
-  Json json{{"method", point.method},
-            {"cells", point.cells},
-            {"tolerance", point.tolerance},
-            {"status", point.status}};
+  Json json{{"method", point.method}, {"cells", point.cells}, {"tolerance", point.tolerance}, {"status", point.status}};
   set_numbers(json, {{"seconds", point.seconds}, {"error", point.error}});
   return json;
 }
@@ -86,8 +78,7 @@ std::string shape_text(const solver::Surface& surface) {
   std::string text = solver::to_string(surface.shape);
   for (const solver::ShapeNumber& number : solver::shape_numbers()) {
     if (!number.belongs_to(surface.shape)) continue;
-    text += fmt::format(", {} {:g}{}{}", number.name, number.of(surface), number.unit.empty() ? "" : " ",
-                        number.unit);
+    text += fmt::format(", {} {:g}{}{}", number.name, number.of(surface), number.unit.empty() ? "" : " ", number.unit);
   }
   if (surface.shape == solver::Shape::height_map) text += " " + surface.map.file.filename().string();
   if (surface.at[0] != 0.0 || surface.at[1] != 0.0) {
@@ -100,8 +91,8 @@ std::string shape_text(const solver::Surface& surface) {
 std::string material_text(const solver::Material& material) {
   std::string layer;
   if (const auto& c = material.coating) {
-    layer = fmt::format(", {:g} mm of {} on it", 1e3 * c->thickness,
-                        material_text({c->young_modulus, c->poisson_ratio}));
+    layer =
+        fmt::format(", {:g} mm of {} on it", 1e3 * c->thickness, material_text({c->young_modulus, c->poisson_ratio}));
   }
   if (std::isinf(material.young_modulus)) return "rigid" + layer;
   return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio) + layer;
@@ -140,9 +131,7 @@ void add_friction_rows(const solver::FrictionLaw& law, const auto& add) {
 
 Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& grid) {
   Summary rows;
-  const auto add = [&](const std::string& words, const std::string& value) {
-    rows.emplace_back(words, value);
-  };
+  const auto add = [&](const std::string& words, const std::string& value) { rows.emplace_back(words, value); };
   for (const solver::Surface& surface : scene.surfaces) add("Indenter", shape_text(surface));
   add("Upper body", material_text(scene.upper));
   add("Lower body", material_text(scene.lower));
@@ -159,8 +148,7 @@ Summary summary(const Scene& scene, const Scene& on_page, const solver::Grid& gr
   }
   std::string cells = fmt::format("{} x {} cells", grid.n1, grid.n2);
   if (scene.grid.cells != on_page.grid.cells) {
-    cells +=
-        fmt::format(" on this page; the scene file has {} x {}", scene.grid.cells[0], scene.grid.cells[1]);
+    cells += fmt::format(" on this page; the scene file has {} x {}", scene.grid.cells[0], scene.grid.cells[1]);
   }
   add("Grid", cells);
   const std::string solved_by =
@@ -194,8 +182,7 @@ SceneDescription::Gap gap_of_bodies(const solver::Model& model, const solver::Gr
   }
   for (solver::Index i = 0; i < grid.n1; i += 1 + grid.n1 / kShownOnMap) {
     std::vector<double>& row = gap.map.emplace_back();
-    for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShownOnMap)
-      row.push_back(coarse(gap_at(i, j)));
+    for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShownOnMap) row.push_back(coarse(gap_at(i, j)));
   }
   return gap;
 }

@@ -33,9 +33,8 @@ struct PageSize {
 };
 PageSize page_size(Effort effort);
 
-/// The validation of the paper. inputs: the folder with scenes/, hard/, check/fields/, gates/ and
-/// literature/. A quick validation takes every tenth hard case, and omits the gates and the studies of the
-/// literature.
+/// The validation of the paper. inputs: the folder with scenes/, hard/, check/fields/, gates/ and literature/. A quick
+/// validation takes every tenth hard case, and omits the gates and the studies of the literature.
 struct Validation {
   std::filesystem::path inputs;
   Effort effort;
@@ -69,8 +68,7 @@ struct PageNumber {
   Number uncertainty = {};  ///< of the reference, relative
 };
 
-/// One solve of the comparison of methods. error: distance from the reference plus the reference's
-/// uncertainty.
+/// One solve of the comparison of methods. error: distance from the reference plus the reference's uncertainty.
 struct CostPoint {
   std::string method = {};
   solver::Index cells = 0;
@@ -101,9 +99,8 @@ struct PageProgram {
   Number error = {};
 };
 
-/// The methods, other programs and ways to sum. programs: none where there is none to compare; operators:
-/// direct sums against convolution, by slipstick.speed.crossovers; none where another program solves the
-/// scene.
+/// The methods, other programs and ways to sum. programs: none where there is none to compare; operators: direct sums
+/// against convolution, by slipstick.speed.crossovers; none where another program solves the scene.
 struct Costs {
   Cost cost = {};
   std::optional<std::vector<PageProgram>> programs = {};
@@ -165,7 +162,6 @@ struct Page {
 Json to_json(const Page& page);
 
 /// on_page: the scene with the cells of the page's answer.
-SceneDescription describe(const solver::Scene& scene, const solver::Scene& on_page,
-                          const std::filesystem::path& file);
+SceneDescription describe(const solver::Scene& scene, const solver::Scene& on_page, const std::filesystem::path& file);
 
 }  // namespace slipstick::convergence

@@ -101,8 +101,7 @@ std::string summary_row(const Page& page) {
   std::string lines;
   for (const Finding& finding : page.headline.findings)
     lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", finding.what, finding.line);
-  return fmt::format("| {} | {} | {} |", markdown_text(page.scene.name), page.headline.verdict(),
-                     markdown_text(lines));
+  return fmt::format("| {} | {} | {} |", markdown_text(page.scene.name), page.headline.verdict(), markdown_text(lines));
 }
 
 /// A page for each scene. Exit code 1 where a verdict is bad.
@@ -142,11 +141,9 @@ int make_pages(PageRequest request, const ReportRequest& words, std::ostream& te
   words.runs.progress->end();
   draw(folders, words);
   write_option_file("--junit", words.junit, junit_text("slipstick report", cases));
-  append_option_file(
-      "--summary", words.summary,
-      markdown_with_table("### slipstick report\n\n", "| scene | verdict | why |", rows, "scenes"));
-  return std::ranges::any_of(pages, [](const Page& page) { return page.headline.verdict() == "bad"; }) ? 1
-                                                                                                       : 0;
+  append_option_file("--summary", words.summary,
+                     markdown_with_table("### slipstick report\n\n", "| scene | verdict | why |", rows, "scenes"));
+  return std::ranges::any_of(pages, [](const Page& page) { return page.headline.verdict() == "bad"; }) ? 1 : 0;
 }
 
 int run_report(ReportRequest request, std::ostream& text, Json& result) {
@@ -168,8 +165,7 @@ int run_report(ReportRequest request, std::ostream& text, Json& result) {
 
 RunCommand add_report_command(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
-  CLI::App* const command =
-      app.add_subcommand("report", "Draw the page of any scene: errors, orders, times, verdict");
+  CLI::App* const command = app.add_subcommand("report", "Draw the page of any scene: errors, orders, times, verdict");
   command->add_option("scene", request->scenes,
                       "scene files, a page for each (default: the paper's scene, with the paper's "
                       "validation)");

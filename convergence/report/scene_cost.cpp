@@ -61,8 +61,7 @@ std::vector<Contender> contenders(const PageScene& at) {
                    {fmt::format("solver.method=\"{}\"", name), kNoProgram},
                    method == scene.solver.method ? finest : at.size.method_cells});
   }
-  if (!scene.solver.program.empty())
-    all.push_back({read_solver_program(scene.solver.program).name, {}, finest});
+  if (!scene.solver.program.empty()) all.push_back({read_solver_program(scene.solver.program).name, {}, finest});
   return all;
 }
 
@@ -73,10 +72,9 @@ void compare(PageProgram& row, const Json& result, const std::vector<std::string
              const std::vector<PageNumber>& known) {
   for (const std::string& number : numbers) {
     const PageNumber* const reference = find_row(known, number);
-    const double error =
-        reference == nullptr
-            ? kNaN
-            : std::abs(size_at(result, number) / reference->reference - 1.0) + reference->uncertainty;
+    const double error = reference == nullptr
+                             ? kNaN
+                             : std::abs(size_at(result, number) / reference->reference - 1.0) + reference->uncertainty;
     row.number = number;
     row.error = number_or(error, is_failed(result) ? "there is no answer" : "no reference is known");
     if (std::isfinite(error)) return;
@@ -113,8 +111,7 @@ Cost error_against_time(const PageScene& at, const Reference& reference, const P
 }
 
 /// The answers of this program and of others on the meshes of a page of another program.
-std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest& contest,
-                                             const ProcessPool& pool) {
+std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest& contest, const ProcessPool& pool) {
   std::vector<BesideMethod> all{{"slipstick", kNoProgram}};
   all.insert(all.end(), contest.programs.begin(), contest.programs.end());
   std::vector<RunSpec> runs;
@@ -135,13 +132,12 @@ std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest&
     row.message = word(result, "message");
     row.version = foreign ? word(*program, "version") : "";
     row.seconds = number_or(seconds_of(result), "there is no answer");
-    row.cpu_seconds =
-        number_or(foreign ? number_at(result, "program.cpu_seconds") : kNaN, "it was not counted");
+    row.cpu_seconds = number_or(foreign ? number_at(result, "program.cpu_seconds") : kNaN, "it was not counted");
     const bool only_pressure = foreign && word(*program, "fields") == "pressure";
-    compare(row, result,
-            only_pressure ? std::vector<std::string>{"approach", "peak_pressure"}
-                          : std::vector{contest.reference.number},
-            contest.numbers);
+    compare(
+        row, result,
+        only_pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{contest.reference.number},
+        contest.numbers);
   }
   return rows;
 }
@@ -150,8 +146,7 @@ std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest&
 /// no numbers, and the reason.
 Json operator_times(const Json& families) {
   try {
-    return run_package_module("speed.crossovers",
-                              {{"families", families}, {"slow", "direct"}, {"quick", "dcfft"}})
+    return run_package_module("speed.crossovers", {{"families", families}, {"slow", "direct"}, {"quick", "dcfft"}})
         .result;
   } catch (const std::runtime_error& failure) {
     Json none{{"rows", Json::array()}, {"remark", failure.what()}};
@@ -169,8 +164,7 @@ Json direct_against_dcfft(const PageScene& at, const ProcessPool& pool) {
       for (int repetition = 1; repetition <= at.size.repetitions; ++repetition) {
         RunSpec& run = runs.emplace_back(at.on(static_cast<Index>(cells)));
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
-        run.overrides.push_back(
-            fmt::format("name=\"repetition {}\"", repetition));  // else it is the same run
+        run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // else it is the same run
       }
     }
   }
@@ -217,25 +211,23 @@ SceneCosts scene_costs(const RunSpec& base, const PageSize& size, const std::vec
 
 std::string costs_text(const SceneCosts& costs) {
   const auto& [cost, programs, operators] = costs.costs;
-  std::string text =
-      fmt::format("{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n",
-                  costs.scene, cost.number, shown_number(cost.reference_uncertainty, ""), "method", "cells",
-                  "tolerance", "error", "time");
+  std::string text = fmt::format(
+      "{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n", costs.scene,
+      cost.number, shown_number(cost.reference_uncertainty, ""), "method", "cells", "tolerance", "error", "time");
   for (const CostPoint& point : cost.points) {
-    text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point.method, point.cells,
-                        point.tolerance, shown_number(point.error, ""), shown_number(point.seconds, " s"),
+    text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point.method, point.cells, point.tolerance,
+                        shown_number(point.error, ""), shown_number(point.seconds, " s"),
                         point.status == "converged" ? "" : "  " + point.status);
   }
   for (const PageProgram& row : programs.value_or(std::vector<PageProgram>{})) {
-    text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "",
-                        shown_number(row.error, ""), shown_number(row.seconds, " s"), row.number,
-                        row.status == "converged" ? "" : row.status);
+    text +=
+        fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row.name, row.cells, "", shown_number(row.error, ""),
+                    shown_number(row.seconds, " s"), row.number, row.status == "converged" ? "" : row.status);
   }
   if (!operators) return text;
   const double crossover = number_at(*operators, "cells");
   text += std::isfinite(crossover)
-              ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n",
-                            crossover)
+              ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n", crossover)
               : fmt::format("  convolution against direct summation: {}\n", word(*operators, "remark"));
   return text;
 }

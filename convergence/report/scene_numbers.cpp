@@ -66,9 +66,8 @@ std::vector<Index> meshes(Index finest, const auto& parts) {
 }
 
 bool is_rough(const Scene& scene) {
-  return std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
-    return surface.shape == solver::Shape::roughness;
-  });
+  return std::ranges::any_of(scene.surfaces,
+                             [](const solver::Surface& surface) { return surface.shape == solver::Shape::roughness; });
 }
 
 /// How far the mesh may put a number on the finest mesh off, relative, and how that is known.
@@ -95,8 +94,7 @@ MeshError error_by_study(const StudyResult& study, const std::string& key, doubl
 /// The key of the number to which the uncertainty of a result refers.
 std::string resolved_number(const Json& result) { return result.at("resolved").value("number", ""); }
 
-/// The mesh's error as the result states it, relative; NaN where the result's uncertainty refers to another
-/// number.
+/// The mesh's error as the result states it, relative; NaN where the result's uncertainty refers to another number.
 double stated_mesh_error(const Json& result, const std::string& key) {
   return resolved_number(result) == key ? number_at(result, "resolved.mesh") / size_at(result, key) : kNaN;
 }
@@ -117,8 +115,7 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
   }
   std::vector<MeshSample> samples;
   samples.reserve(results.size());
-  for (const Json& result : results)
-    samples.push_back({number_at(result, "cell_size[0]"), size_at(result, key)});
+  for (const Json& result : results) samples.push_back({number_at(result, "cell_size[0]"), size_at(result, key)});
   if (is_rough(scene)) {
     const double change = std::abs(value / samples[samples.size() - 2].value - 1.0);
     const double error = std::fmax(change, stated_mesh_error(finest, key));
@@ -171,8 +168,7 @@ void add_error(PageNumber& row, const MeshError& mesh, double path) {
   if (!exact && std::isnan(path)) {
     row.basis += "; " + kNoPath;
   } else if (!exact && path > kRounded * std::abs(mesh.error)) {
-    row.basis =
-        fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), mesh.basis, path);
+    row.basis = fmt::format("mesh {:.1e}, {}; length of the steps {:.1e}", std::abs(mesh.error), mesh.basis, path);
   }
   row.reference = number_or(mesh.reference, row.basis);
   row.error = number_or(exact ? mesh.error : std::abs(mesh.error) + path, row.basis);
@@ -257,8 +253,7 @@ std::string words_of(const std::string& number) {
   return found == std::end(kNumbers) ? number : found->words;
 }
 
-std::vector<PageNumber> number_rows(const Scene& scene, const std::vector<Json>& results,
-                                    const StudyResult& study) {
+std::vector<PageNumber> number_rows(const Scene& scene, const std::vector<Json>& results, const StudyResult& study) {
   const solver::Model model = solver::make_model(scene);
   const bool on_path = depends_on_path(scene, model.pressure_coupling && model.law->couples());
   const Json& answer = results.back();

@@ -47,8 +47,7 @@ PageScene page_scene(const RunSpec& base, const PageSize& size);
 
 /// The results on the answer's meshes, coarsest first; the fields of the last one are written to a file.
 /// Throws std::runtime_error where it has no answer.
-std::vector<Json> solve_answer(const PageScene& at, const std::filesystem::path& fields,
-                               const ProcessPool& pool);
+std::vector<Json> solve_answer(const PageScene& at, const std::filesystem::path& fields, const ProcessPool& pool);
 
 /// The studies of meshes, unless the scene has its own, and of tolerances.
 std::vector<StudyResult> scene_studies(const PageScene& at, const ProcessPool& pool);

@@ -49,12 +49,10 @@ std::vector<HardCase> hard_cases(const PageScene& at) {
     if (!at.own) run.overrides.emplace_back(kNoProgram);
     cases.push_back({.family = family, .why = why, .name = name, .run = std::move(run)});
   };
-  add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", at.scene.name,
-      at.on_coarsest());
+  add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", at.scene.name, at.on_coarsest());
   if (!at.meshes.given) {
     for (const Index cells : kCoarseCells) {
-      add("coarse_meshes", "a few cells: the answer must state its uncertainty", std::to_string(cells),
-          at.on(cells));
+      add("coarse_meshes", "a few cells: the answer must state its uncertainty", std::to_string(cells), at.on(cells));
     }
   }
   const std::vector<solver::Step>& steps = at.scene.steps;
@@ -78,10 +76,9 @@ Scene on_finest_mesh(const PageScene& at) {
 SceneDescription described(const PageScene& at) {
   SceneDescription found = describe(at.scene, on_finest_mesh(at), at.base.scene);
   if (at.shortened && !at.meshes.given) {
-    found.summary.emplace_back("Left out",
-                               fmt::format("meshes of more than {} cells, of a history of more than {} "
-                                           "steps (a page without --quick has them)",
-                                           at.meshes.answer.back(), at.size.long_history));
+    found.summary.emplace_back("Left out", fmt::format("meshes of more than {} cells, of a history of more than {} "
+                                                       "steps (a page without --quick has them)",
+                                                       at.meshes.answer.back(), at.size.long_history));
   }
   return found;
 }
@@ -133,8 +130,7 @@ std::vector<Stage> page_stages(const PageRequest& request, const std::string& sc
                             {"costs", 5.0, scene},
                             {"hard variants", 2.0, scene},
                             {"rounding", 0.5, scene}};
-  if (request.validation)
-    std::ranges::move(validation_stages(*request.validation), std::back_inserter(stages));
+  if (request.validation) std::ranges::move(validation_stages(*request.validation), std::back_inserter(stages));
   return stages;
 }
 
@@ -142,8 +138,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
   const PageScene at = page_scene(request.base, request.size);
   if (!at.own && !request.uncertain.empty())
     throw solver::InputError("--uncertain", "cannot be combined with solver.program; allowed: without it");
-  const std::vector<UncertainInput> uncertain =
-      uncertain_inputs({at.base.scene, at.base.overrides}, request.uncertain);
+  const std::vector<UncertainInput> uncertain = uncertain_inputs({at.base.scene, at.base.overrides}, request.uncertain);
   solver::make_folder(folder);
   const fs::path fields = folder / ("answer" + solver::fields_ending());
   pool.progress().begin("answer");
@@ -185,8 +180,7 @@ Page scene_page(const PageRequest& request, const fs::path& folder, const Proces
     page.paper = to_json(paper);
   }
   const fs::path file = folder / "report.json";
-  page.headline =
-      with_changes(headline_of(std::move(findings), std::move(counts), page), earlier_headline(file));
+  page.headline = with_changes(headline_of(std::move(findings), std::move(counts), page), earlier_headline(file));
   write_json_file(file, to_json(page));
   return page;
 }

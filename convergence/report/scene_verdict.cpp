@@ -105,8 +105,8 @@ Finding judge_order(const StudyResult& study, const std::string& number, const s
       const Order& order = found->order;
       const double expected = found->expected.value;
       const bool preasymptotic = order.verdict == OrderVerdict::preasymptotic;
-      const bool fitted = preasymptotic || order.verdict == OrderVerdict::asymptotic ||
-                          order.verdict == OrderVerdict::superconvergent;
+      const bool fitted =
+          preasymptotic || order.verdict == OrderVerdict::asymptotic || order.verdict == OrderVerdict::superconvergent;
       if (!fitted || std::isnan(expected)) return open(order.why);
       const std::string line = fmt::format("of the {}: {}", words, order.why);
       if (order.high < expected - kWorseOrder) return {"Orders", line, Shown::fails};
@@ -121,8 +121,8 @@ Finding judge_hard(const HardResult& hard, const std::string& what) {
   const std::size_t wrong = hard.count(HardVerdict::wrong);
   const std::size_t not_converged = hard.count(HardVerdict::not_converged);
   std::string line = fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
-                                 hard.count(HardVerdict::certified), hard.rows.size(),
-                                 hard.count(HardVerdict::refused), not_converged, wrong);
+                                 hard.count(HardVerdict::certified), hard.rows.size(), hard.count(HardVerdict::refused),
+                                 not_converged, wrong);
   for (const HardRow& row : hard.rows) {
     if (row.judged.verdict == HardVerdict::wrong || row.judged.verdict == HardVerdict::not_converged)
       line += case_text(row.hard, row.judged.reason);
@@ -140,16 +140,16 @@ Finding judge_check(const Json& answer, const Json& check) {
 Finding judge_pressure(const Json& answer) {
   const double open = number_at(answer, "pressure_complementarity");
   return {"Pressure",
-          fmt::format("its gap is open under {:.1e} of it, {:g} allowed; there are no tractions to judge",
-                      open, kOpenUnderPressure),
+          fmt::format("its gap is open under {:.1e} of it, {:g} allowed; there are no tractions to judge", open,
+                      kOpenUnderPressure),
           shown(std::abs(open) <= kOpenUnderPressure)};
 }
 
 Finding judge_hard_beside(const HardResult& hard) {
   const auto [agree, refuse, open, direction, answer] = hard.method_counts(0);
-  std::string line = fmt::format(
-      "{} of {} agree with this program's, {} refused, {} not converged or failed, {} are other answers",
-      agree, hard.rows.size(), refuse, open, direction + answer);
+  std::string line =
+      fmt::format("{} of {} agree with this program's, {} refused, {} not converged or failed, {} are other answers",
+                  agree, hard.rows.size(), refuse, open, direction + answer);
   for (const HardRow& row : hard.rows) {
     const ComparedAnswer& found = row.methods.front().second;
     if (found.verdict == MethodVerdict::other_direction || found.verdict == MethodVerdict::other_answer)
@@ -163,8 +163,7 @@ Finding judge_accuracy(const std::vector<PageNumber>& numbers, const std::string
   if (row == nullptr) return {"Accuracy", "the error of the answer is unknown", Shown::open};
   const bool holds = std::abs(row->error) <= solver::kPoorlyResolved;
   return {"Accuracy",
-          fmt::format("the {} {}{}", row->words, error_text(*row),
-                      holds ? "" : cure(*row, solver::kPoorlyResolved)),
+          fmt::format("the {} {}{}", row->words, error_text(*row), holds ? "" : cure(*row, solver::kPoorlyResolved)),
           holds ? Shown::holds : Shown::open};
 }
 
@@ -196,9 +195,8 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
 }
 
 Headline headline_of(std::vector<Finding> findings, Json counts, const Page& page) {
-  Headline headline{.findings = std::move(findings),
-                    .commit = text_of(page.provenance, "commit"),
-                    .counts = std::move(counts)};
+  Headline headline{
+      .findings = std::move(findings), .commit = text_of(page.provenance, "commit"), .counts = std::move(counts)};
   for (const PageNumber& row : page.numbers) headline.numbers.emplace_back(row.key, row.value);
   return headline;
 }

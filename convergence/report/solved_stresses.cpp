@@ -39,8 +39,7 @@ Json plane(std::size_t axis, const std::vector<Tensor>& stresses, std::size_t co
 
 }  // namespace
 
-std::vector<RunSpec> stress_runs(const std::filesystem::path& scene,
-                                 const std::vector<solver::Index>& cells) {
+std::vector<RunSpec> stress_runs(const std::filesystem::path& scene, const std::vector<solver::Index>& cells) {
   std::vector<RunSpec> runs;
   for (const solver::Index across : cells) {
     runs.push_back({.scene = scene,

@@ -9,8 +9,7 @@
 
 namespace slipstick::convergence {
 
-/// The paper's sphere in the state of the last map of `first_yield`, by mesh, with the errors of its
-/// stresses.
+/// The paper's sphere in the state of the last map of `first_yield`, by mesh, with the errors of its stresses.
 std::vector<RunSpec> stress_runs(const std::filesystem::path& scene, const std::vector<solver::Index>& cells);
 
 /// {cells, planes, errors}: von Mises' stress and the largest shear of a solve in the planes x1-x3 and x2-x3,

@@ -89,9 +89,7 @@ struct MeshPoint {
     return {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("contact.pressure=\"{}\"", pressure),
             fmt::format("load.moment_ratio={}", moment_ratio), method_override(method)};
   }
-  static std::string method_override(const std::string& method) {
-    return fmt::format("solver.method=\"{}\"", method);
-  }
+  static std::string method_override(const std::string& method) { return fmt::format("solver.method=\"{}\"", method); }
 };
 
 std::string fields_file(double moment_ratio) {
@@ -117,8 +115,7 @@ constexpr double kBeyondRatio = 0.7;
 /// The runs of the page by its sections.
 using Sections = std::map<std::string, std::vector<RunSpec>>;
 
-Sections page_runs(const fs::path& scene, const fs::path& scenes, const ValidationSize& size,
-                   const fs::path& folder) {
+Sections page_runs(const fs::path& scene, const fs::path& scenes, const ValidationSize& size, const fs::path& folder) {
   Sections runs;
   const auto add = [&](const char* section, const MeshPoint& point) -> RunSpec& {
     return runs[section].emplace_back(RunSpec{.scene = scene, .overrides = point.overrides()});
@@ -129,8 +126,7 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
     run.profile = true;
   }
   for (const char* method : {"coulomb", "paper"}) {
-    for (const double ratio : size.moment_ratios)
-      add("loading", {size.loading_cells, "solved", ratio, method});
+    for (const double ratio : size.moment_ratios) add("loading", {size.loading_cells, "solved", ratio, method});
   }
   for (const char* pressure : kPressures) {
     for (const double ratio : kProfileRatios) {
@@ -142,8 +138,7 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
     for (const Index cells : size.ellipse_cells) {
       RunSpec& run = add("ellipse", {});
       run.scene = scenes / "ellipse.toml";
-      run.overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2),
-                       MeshPoint::method_override(method)};
+      run.overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2), MeshPoint::method_override(method)};
     }
   }
   for (const Beyond& beyond : beyond_the_paper()) {
@@ -164,8 +159,7 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
 /// The results of each section, all solved in parallel. Throws std::runtime_error where one is missing.
 std::map<std::string, std::vector<Json>> solve_all(const Sections& sections, const ProcessPool& pool) {
   std::vector<RunSpec> runs;
-  for (const auto& [name, of_section] : sections)
-    runs.insert(runs.end(), of_section.begin(), of_section.end());
+  for (const auto& [name, of_section] : sections) runs.insert(runs.end(), of_section.begin(), of_section.end());
   std::vector<Json> results = to_json(pool.run(runs));
   for (const Json& result : results) {
     if (is_failed(result))
@@ -185,9 +179,8 @@ Json profile(double moment_ratio, Json result) {
   Json computed = result.at("profile");
   result.erase("profile");
   const analytic::TorsionState state = analytic::from_moment_ratio(moment_ratio);
-  return {{"moment_ratio", moment_ratio},        {"stick_ratio", state.stick_ratio},
-          {"exact", exact_profile(state)},       {"computed", std::move(computed)},
-          {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
+  return {{"moment_ratio", moment_ratio},    {"stick_ratio", state.stick_ratio},    {"exact", exact_profile(state)},
+          {"computed", std::move(computed)}, {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
 }
 
 /// Some keys of a result.
@@ -242,8 +235,8 @@ HardResult hard_results(const fs::path& folder, std::size_t step, const ProcessP
   }
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return run_hard_cases(
-      shown, {.variants = false, .finer_meshes = false, .methods = {read_beside_method("paper")}}, pool);
+  return run_hard_cases(shown, {.variants = false, .finer_meshes = false, .methods = {read_beside_method("paper")}},
+                        pool);
 }
 
 /// A field of check/fields/, at 0.9 of the limit moment. twist: rad, as the program reports it.
@@ -263,13 +256,13 @@ std::vector<KnownField> judge_peers(const fs::path& inputs) {
   std::vector<KnownField> rows;
   for (const auto& [program, file, twist, expected] : kFields) {
     const Json result = to_json(check_field(scene, inputs / "check" / "fields" / file, {.twist = twist}));
-    rows.push_back({.program = program,
-                    .file = file,
-                    .expected = expected,
-                    .verdict = result.value("verdict", ""),
-                    .check = row_of(result, {"verdict", "why", "cells", "twist_error", "moment_error",
-                                             "stick_radius_error", "traction_error", "certificate",
-                                             "slip_direction", "judged"})});
+    rows.push_back(
+        {.program = program,
+         .file = file,
+         .expected = expected,
+         .verdict = result.value("verdict", ""),
+         .check = row_of(result, {"verdict", "why", "cells", "twist_error", "moment_error", "stick_radius_error",
+                                  "traction_error", "certificate", "slip_direction", "judged"})});
   }
   return rows;
 }
@@ -279,11 +272,10 @@ Json beyond_rows(const std::map<std::string, std::vector<Json>>& results) {
   Json rows = Json::array();
   for (const auto& [name, overrides] : beyond_the_paper()) {
     const std::vector<Json>& by_mesh = results.at(name);
-    rows.push_back(
-        {{"name", name},
-         {"rows", rows_of(by_mesh, {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
-                                    "traction_error", "operator_applications", "certificate"})},
-         {"profile", by_mesh.back().at("profile")}});
+    rows.push_back({{"name", name},
+                    {"rows", rows_of(by_mesh, {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
+                                               "traction_error", "operator_applications", "certificate"})},
+                    {"profile", by_mesh.back().at("profile")}});
   }
   return rows;
 }
@@ -329,12 +321,12 @@ long number_with(const std::vector<Judgement>& gates, Outcome outcome) {
 }
 
 Finding judge_literature(const std::vector<Judgement>& gates) {
-  return {"Literature",
-          fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
-                      number_with(gates, Outcome::passed), gates.size(),
-                      number_with(gates, Outcome::failed_as_expected)) +
-              wrong_gates(gates),
-          shown(exit_code(gates) == 0)};
+  return {
+      "Literature",
+      fmt::format("{} of {} published numbers agree at their digits, {} differ for a known reason",
+                  number_with(gates, Outcome::passed), gates.size(), number_with(gates, Outcome::failed_as_expected)) +
+          wrong_gates(gates),
+      shown(exit_code(gates) == 0)};
 }
 
 Finding judge_gates(const std::vector<Judgement>& gates) {
@@ -344,8 +336,7 @@ Finding judge_gates(const std::vector<Judgement>& gates) {
   }
   line += wrong_gates(gates);
   if (const Judgement* const nearest = nearest_to_bound(gates); nearest != nullptr) {
-    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it", nearest->gate.id,
-                        100.0 * nearest->factor);
+    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it", nearest->gate.id, 100.0 * nearest->factor);
   }
   return {"Gates", line, shown(exit_code(gates) == 0)};
 }
@@ -434,9 +425,8 @@ Json to_json(const PaperValidation& paper) {
   Json json = paper.figures;
   Json peers = Json::array();
   for (const KnownField& peer : paper.peers) peers.push_back(to_json(peer));
-  json.update(Json{{"hard", to_json(paper.hard)},
-                   {"peers", std::move(peers)},
-                   {"literature", gates_json(paper.literature)}});
+  json.update(
+      Json{{"hard", to_json(paper.hard)}, {"peers", std::move(peers)}, {"literature", gates_json(paper.literature)}});
   if (paper.gates) json.emplace("gates", gates_json(*paper.gates));
   return json;
 }

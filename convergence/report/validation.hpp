@@ -41,8 +41,7 @@ std::vector<Stage> validation_stages(const Validation& request);
 
 /// Writes the fields that the page draws into `folder`. Throws std::runtime_error where a run has no result,
 /// and as the pool does.
-PaperValidation validate(const Validation& request, const std::filesystem::path& folder,
-                         const ProcessPool& pool);
+PaperValidation validate(const Validation& request, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// Gates hold, unless they are omitted; no hard case is wrong; `check` finds the known verdicts of fields of
 /// other programs; published numbers agree.

@@ -35,17 +35,16 @@ double slope_at(const solver::Surface& shape, double a) {
 }
 
 /// About waves of a random surface that the grid hardly shows.
-void add_wave_doubts(const solver::Surface& shape, const ProblemRecord& grid,
-                     std::vector<std::string>& doubts) {
+void add_wave_doubts(const solver::Surface& shape, const ProblemRecord& grid, std::vector<std::string>& doubts) {
   if (shape.shape != solver::Shape::roughness) return;
   const double cell = std::fmax(grid.cell_size[0], grid.cell_size[1]);
   const double cells = shape.roughness.shortest / cell;
   constexpr double kRounding = 1e-9;
   if (!(cells < kFewestCellsOfWave * (1.0 - kRounding))) return;
-  doubts.push_back(fmt::format(
-      "{}.shortest, {:.3g} m, is {:.3g} cells long: with fewer than {} the answer is "
-      "that of a smoother surface; take smaller cells or longer shortest waves",
-      shape.key.empty() ? "upper" : shape.key, shape.roughness.shortest, cells, kFewestCellsOfWave));
+  doubts.push_back(
+      fmt::format("{}.shortest, {:.3g} m, is {:.3g} cells long: with fewer than {} the answer is "
+                  "that of a smoother surface; take smaller cells or longer shortest waves",
+                  shape.key.empty() ? "upper" : shape.key, shape.roughness.shortest, cells, kFewestCellsOfWave));
 }
 
 /// About the moduli and yield stresses, which the pressure should not exceed.
@@ -91,8 +90,7 @@ std::vector<std::string> doubts_about(const solver::Scene& scene, const SolveRec
     doubts.push_back(fmt::format(
         "{}: {}, {:.3g}, is above {}: half-spaces neglect terms of the order of the slope's square",
         shape.key.empty() ? "upper" : shape.key,
-        round ? fmt::format("the contact's radius, {:.3g} m, over the body's", radius) : "the slope", slope,
-        kSteep));
+        round ? fmt::format("the contact's radius, {:.3g} m, over the body's", radius) : "the slope", slope, kSteep));
   }
   add_pressure_doubts("upper", scene.upper, pressure, doubts);
   add_pressure_doubts("lower", scene.lower, pressure, doubts);

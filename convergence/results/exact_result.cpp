@@ -51,9 +51,8 @@ Oracle find_required_oracle(const solver::Scene& scene) {
     if (exact.out_of_range) {
       throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
     }
-    throw solver::InputError(
-        file, "solver.model", "\"exact\"",
-        fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
+    throw solver::InputError(file, "solver.model", "\"exact\"",
+                             fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
   }
   return *exact.oracle;
 }
@@ -69,16 +68,14 @@ SolveRecord exact_record(const solver::Scene& scene, const Oracle& oracle, doubl
   SolveRecord record;
   record.status = RunStatus::converged;
   record.name = scene.name;
-  record.problem = {
-      .method = "exact", .profile = oracle.normal.profile->name(), .left_out = omissions(scene)};
+  record.problem = {.method = "exact", .profile = oracle.normal.profile->name(), .left_out = omissions(scene)};
   EndRecord& end = record.end;
   end.contact = {.contact_radius = known(oracle.contact_radius),
                  .stick_radius = known(oracle.stick_radius),
                  .stick_ratio = {oracle.state.stick_ratio},
                  .normal_load = {*scene.steps.back().normal},
-                 .peak_pressure = std::isinf(oracle.normal.peak_pressure)
-                                      ? Number{.why_missing = "infinite"}
-                                      : known(oracle.normal.peak_pressure),
+                 .peak_pressure = std::isinf(oracle.normal.peak_pressure) ? Number{.why_missing = "infinite"}
+                                                                          : known(oracle.normal.peak_pressure),
                  .approach = known(oracle.normal.approach)};
   end.friction = make_friction(scene.contact.friction, oracle.friction.force);
   end.loads = {.twist_angle = {oracle.twist_angle},

@@ -67,8 +67,8 @@ Json parse_json(const std::string& text, const std::string& source, const std::s
   try {
     return extent.keys > kMaxOrderedKeys ? Json(nlohmann::json::parse(text)) : Json::parse(text);
   } catch (const nlohmann::json::exception& error) {
-    throw solver::InputError(
-        source, fmt::format("is not JSON ({}); allowed: {}", solver::shown(error.what()), allowed));
+    throw solver::InputError(source,
+                             fmt::format("is not JSON ({}); allowed: {}", solver::shown(error.what()), allowed));
   }
 }
 

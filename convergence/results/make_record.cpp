@@ -43,15 +43,13 @@ ContactRecord contact_of(const solver::Scene& scene, const Solution& solution) {
           .stick_ratio = number_or(solution.stick_radius / solution.contact_radius, "no contact"),
           .normal_load = {solution.normal_load},
           .peak_pressure = {solution.peak_pressure},
-          .approach = solved ? Number{solution.approach}
-                             : Number{.why_missing = "the normal contact was not solved"}};
+          .approach = solved ? Number{solution.approach} : Number{.why_missing = "the normal contact was not solved"}};
 }
 
 LimitRecord limit_of(const solver::LimitLoad& limit) {
-  LimitRecord record{
-      .factor = number_or(limit.factor, std::isnan(limit.factor) ? kBroken : "no load is imposed"),
-      .centre = {},
-      .direction = {}};
+  LimitRecord record{.factor = number_or(limit.factor, std::isnan(limit.factor) ? kBroken : "no load is imposed"),
+                     .centre = {},
+                     .direction = {}};
   if (!std::isfinite(limit.factor)) return record;
   if (limit.centre) {
     record.centre = *limit.centre;
@@ -113,9 +111,8 @@ constexpr std::array kQuantityKeys{"twist_angle", "displacement", "moment", "for
 std::string poorly_resolved(const solver::Resolution& resolution) {
   const double mesh = resolution.mesh.*resolution.number;
   const double path = resolution.path.*resolution.number;
-  const std::string uncertain = std::isfinite(resolution.uncertainty)
-                                    ? "uncertain by " + percent_text(resolution.uncertainty)
-                                    : "not determined";
+  const std::string uncertain =
+      std::isfinite(resolution.uncertainty) ? "uncertain by " + percent_text(resolution.uncertainty) : "not determined";
   const double open = resolution.open.*resolution.number;
   if (!(resolution.step <= solver::kPoorlyResolved) || (open > 0.0 && open >= 0.5 * mesh)) {
     return fmt::format(
@@ -160,8 +157,7 @@ ResolutionRecord resolution_of(const solver::Resolution& resolution) {
 // ---------------------------------------------------------------- errors
 
 ExactRecord exact_of(const Oracle& oracle) {
-  const std::string reason =
-      oracle.only_normal.empty() ? "the exact solution does not say" : oracle.only_normal;
+  const std::string reason = oracle.only_normal.empty() ? "the exact solution does not say" : oracle.only_normal;
   const auto known = [&](double value) { return number_or(value, reason); };
   return {.twist_angle = known(oracle.twist_angle),
           .twist = known(oracle.state.twist),
@@ -196,8 +192,7 @@ ErrorsRecord errors_of(const Solution& solution, const OracleAnswer& exact) {
       .stick_ratio = of_friction(errors.stick_ratio),
       .stick_radius_counted = of_friction(errors.stick_radius_counted),
       .contact_radius = known(errors.contact_radius),
-      .peak_pressure =
-          number_or(errors.peak_pressure, std::isfinite(oracle.normal.peak_pressure) ? reason : kNoPeak),
+      .peak_pressure = number_or(errors.peak_pressure, std::isfinite(oracle.normal.peak_pressure) ? reason : kNoPeak),
       .dissipated = of_friction(errors.dissipated),
       .traction = make_traction_error(errors.traction, no_friction),
       .pressure = make_field_error(errors.pressure, reason),
@@ -213,8 +208,7 @@ WorkRecord work_of(const solver::Scene& scene, const Solution& solution) {
   return {.iterations = solution.iterations,
           .operator_applications = solution.operator_applications,
           .pressure_applications = solution.pressure_applications,
-          .turns =
-              scene.contact.coupling == solver::Coupling::full ? std::optional(solution.turns) : std::nullopt,
+          .turns = scene.contact.coupling == solver::Coupling::full ? std::optional(solution.turns) : std::nullopt,
           .seconds = solution.seconds};
 }
 
@@ -344,8 +338,7 @@ StepRecord make_step(const solver::Scene& scene, const Solution& solution, const
           .end = end_of(scene, solution, exact)};
 }
 
-SolveRecord make_incomplete(const std::string& scene_name, const std::string& why,
-                            std::vector<StepRecord> steps) {
+SolveRecord make_incomplete(const std::string& scene_name, const std::string& why, std::vector<StepRecord> steps) {
   SolveRecord record;
   record.message = why;
   record.name = scene_name;

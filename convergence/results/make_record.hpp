@@ -12,15 +12,14 @@
 namespace slipstick::convergence {
 
 /// steps: all steps of the scene's history with the last one; empty without a history.
-SolveRecord make_record(const solver::Scene& scene, const solver::Solution& solution,
-                        const OracleAnswer& exact, std::vector<StepRecord> steps = {});
+SolveRecord make_record(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact,
+                        std::vector<StepRecord> steps = {});
 
 /// The end of one step of a history.
 StepRecord make_step(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
 
 /// The finished steps of a history that broke off, at least one.
-SolveRecord make_incomplete(const std::string& scene_name, const std::string& why,
-                            std::vector<StepRecord> steps);
+SolveRecord make_incomplete(const std::string& scene_name, const std::string& why, std::vector<StepRecord> steps);
 
 /// Reasons to doubt that a scene is the one that was meant, or that the theory holds for it: from the sizes
 /// of slopes, pressures and twists in its result. They change no status and no verdict.

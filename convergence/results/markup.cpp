@@ -34,9 +34,7 @@ std::string xml_text(std::string_view text) {
 }
 
 std::string shell_word(const std::string& text) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::strchr("-._/+,:@", c) != nullptr;
-  };
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("-._/+,:@", c) != nullptr; };
   if (std::all_of(text.begin(), text.end(), is_plain)) return text;
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
@@ -61,14 +59,11 @@ std::string markdown_text(std::string_view text) {
 namespace {
 
 std::string junit_counts(const std::vector<JunitCase>& cases) {
-  const auto count = [&](CaseVerdict verdict) {
-    return std::ranges::count(cases, verdict, &JunitCase::verdict);
-  };
+  const auto count = [&](CaseVerdict verdict) { return std::ranges::count(cases, verdict, &JunitCase::verdict); };
   double seconds = 0.0;
   for (const JunitCase& each : cases) seconds += each.seconds;
-  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
-                     cases.size(), count(CaseVerdict::failure), count(CaseVerdict::error),
-                     count(CaseVerdict::skipped), seconds);
+  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", cases.size(),
+                     count(CaseVerdict::failure), count(CaseVerdict::error), count(CaseVerdict::skipped), seconds);
 }
 
 std::string junit_verdict(const JunitCase& junit) {
@@ -94,24 +89,22 @@ std::string junit_text(const std::string& title, const std::vector<JunitCase>& c
       text += fmt::format(
           "    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">{}<system-out>{}</system-out>"
           "</testcase>\n",
-          xml_text(each.classname), xml_text(each.name), each.seconds, junit_verdict(each),
-          xml_text(each.shown));
+          xml_text(each.classname), xml_text(each.name), each.seconds, junit_verdict(each), xml_text(each.shown));
     }
     text += "  </testsuite>\n";
   }
   return text + "</testsuites>\n";
 }
 
-std::string markdown_with_table(std::string text, std::string_view header,
-                                const std::vector<std::string>& rows, std::string_view noun) {
+std::string markdown_with_table(std::string text, std::string_view header, const std::vector<std::string>& rows,
+                                std::string_view noun) {
   constexpr std::size_t kRoomForNote = 100;  // bytes
   text += fmt::format("{}\n|", header);
   for (auto bars = std::ranges::count(header, '|'); bars > 1; --bars) text += "---|";
   text += "\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (text.size() + rows[i].size() + kRoomForNote > kMaxMarkdown) {
-      return text +
-             fmt::format("\n{} more {}, none worse than these, are left out here.\n", rows.size() - i, noun);
+      return text + fmt::format("\n{} more {}, none worse than these, are left out here.\n", rows.size() - i, noun);
     }
     text += rows[i] + "\n";
   }

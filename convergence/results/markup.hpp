@@ -46,7 +46,7 @@ std::string junit_text(const std::string& title, const std::vector<JunitCase>& c
 
 /// A text and a table below it, together shorter than kMaxMarkdown bytes: rows that do not fit are counted.
 /// rows: each begins and ends with a bar; the worst come first. noun: "gates", in "7 more gates".
-std::string markdown_with_table(std::string text, std::string_view header,
-                                const std::vector<std::string>& rows, std::string_view noun);
+std::string markdown_with_table(std::string text, std::string_view header, const std::vector<std::string>& rows,
+                                std::string_view noun);
 
 }  // namespace slipstick::convergence

@@ -87,8 +87,8 @@ void hold_standard_streams() {
 
 void write_standard_output(std::string_view text) {
   errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
-                       std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
+                       std::ferror(stdout) == 0;
   if (!written) throw solver::InputError("standard output", solver::why_not_written(errno));
 }
 

@@ -17,9 +17,7 @@ using solver::Units;
 /// Two sums over the same cells are equal within this, relative.
 constexpr double kEqualSums = 1e-12;
 
-std::string error_text(double error) {
-  return std::isnan(error) ? "" : fmt::format("   (error {:+.1e})", error);
-}
+std::string error_text(double error) { return std::isnan(error) ? "" : fmt::format("   (error {:+.1e})", error); }
 
 /// A value in SI with the unit in which the scene's file has such numbers.
 std::string measured(const Units& units, double value, const std::string& si) {
@@ -38,8 +36,8 @@ std::string translation_text(const EndRecord& end, const Units& units) {
     text += text_line("force", pair_text(units, end.loads.force, "N"));
   }
   if (end.loads.displacement.length() > 0.0) {
-    text += text_line("displacement",
-                      pair_text(units, end.loads.displacement, "m") + error_text(end.errors.displacement));
+    text +=
+        text_line("displacement", pair_text(units, end.loads.displacement, "m") + error_text(end.errors.displacement));
   }
   return text;
 }
@@ -83,9 +81,8 @@ std::string status_text(const SolveRecord& record) {
   const WorkRecord& work = record.end.work;
   const std::string applications =
       record.program ? "" : number_text(work.operator_applications) + " operator applications, ";
-  std::string text =
-      text_line("status", fmt::format("{} ({} iterations, {}{} s)", to_string(record.status), work.iterations,
-                                      applications, number_text(work.seconds.total)));
+  std::string text = text_line("status", fmt::format("{} ({} iterations, {}{} s)", to_string(record.status),
+                                                     work.iterations, applications, number_text(work.seconds.total)));
   if (!record.message.empty()) text += text_line("why", record.message);
   const std::string safeguards = safeguards_text(record.method.safeguards);
   return safeguards.empty() ? text : text + text_line("safeguards", safeguards);
@@ -96,15 +93,13 @@ std::string state_text(const EndRecord& end, const Units& units) {
   const auto& [contact, friction, loads, energy, certificate, resolution, errors, work] = end;
   const bool has_peak = std::isfinite(contact.peak_pressure.value);
   return text_line("normal load", measured(units, contact.normal_load, "N")) +
-         text_line("contact radius",
-                   measured(units, contact.contact_radius, "m") + error_text(errors.contact_radius)) +
+         text_line("contact radius", measured(units, contact.contact_radius, "m") + error_text(errors.contact_radius)) +
          text_line("peak pressure",
                    has_peak ? measured(units, contact.peak_pressure, "Pa") + error_text(errors.peak_pressure)
                             : contact.peak_pressure.why_missing) +
-         text_line("moment",
-                   fmt::format("{} = {} of the limit {}", measured(units, loads.moment, "N m"),
-                               number_text(loads.moment_ratio), measured(units, loads.moment_limit, "N m")) +
-                       error_text(errors.moment)) +
+         text_line("moment", fmt::format("{} = {} of the limit {}", measured(units, loads.moment, "N m"),
+                                         number_text(loads.moment_ratio), measured(units, loads.moment_limit, "N m")) +
+                                 error_text(errors.moment)) +
          text_line("twist", measured(units, loads.twist_angle, "rad") + error_text(errors.twist)) +
          translation_text(end, units) + stick_text(end, units);
 }
@@ -123,12 +118,10 @@ std::string steps_text(const HistoryRecord& history, const Units& units) {
   constexpr std::size_t kMostLines = 24;
   const std::vector<StepRecord>& steps = history.steps;
   constexpr const char* kRow = "  {:<16} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n";
-  const auto head = [&](const char* name, const char* si) {
-    return fmt::format("{} ({})", name, units.word(si));
-  };
+  const auto head = [&](const char* name, const char* si) { return fmt::format("{} ({})", name, units.word(si)); };
   const auto in = [&](double value, const char* si) { return short_text(units.of(si, value)); };
-  std::string text = fmt::format(kRow, "step", head("W", "N"), head("M", "N m"), head("|F|", "N"),
-                                 head("twist", "rad"), head("|delta|", "m"), "lost (J)", "gap");
+  std::string text = fmt::format(kRow, "step", head("W", "N"), head("M", "N m"), head("|F|", "N"), head("twist", "rad"),
+                                 head("|delta|", "m"), "lost (J)", "gap");
   const std::size_t first = steps.size() > kMostLines ? steps.size() - kMostLines : 0;
   if (first > 0) text += fmt::format("  ({} steps before)\n", first);
   for (std::size_t i = first; i < steps.size(); ++i) {
@@ -139,11 +132,10 @@ std::string steps_text(const HistoryRecord& history, const Units& units) {
                         short_text(end.certificate.gap));
   }
   return text +
-         text_line("history",
-                   fmt::format("{} steps, {} J lost, gap/energy at most {}, {} operator "
-                               "applications, {} s",
-                               steps.size(), number_text(history.dissipated), number_text(history.worst_gap),
-                               number_text(history.operator_applications), number_text(history.seconds)));
+         text_line("history", fmt::format("{} steps, {} J lost, gap/energy at most {}, {} operator "
+                                          "applications, {} s",
+                                          steps.size(), number_text(history.dissipated), number_text(history.worst_gap),
+                                          number_text(history.operator_applications), number_text(history.seconds)));
 }
 
 /// The factor by which the loads could rise, and how the body would slide then.
@@ -151,14 +143,13 @@ std::string limit_text(const LimitRecord& limit, const Units& units) {
   if (!limit.centre && !limit.direction) return "";
   const std::array<double, 2>& pair = limit.centre ? *limit.centre : *limit.direction;
   const auto in = [&](double x) { return short_text(limit.centre ? units.of("m", x) : x); };
-  return text_line("limit", fmt::format("{} times these loads; it would slide {} ({}, {}){}",
-                                        number_text(limit.factor), limit.centre ? "turning about" : "along",
-                                        in(pair[0]), in(pair[1]), limit.centre ? " " + units.word("m") : ""));
+  return text_line("limit", fmt::format("{} times these loads; it would slide {} ({}, {}){}", number_text(limit.factor),
+                                        limit.centre ? "turning about" : "along", in(pair[0]), in(pair[1]),
+                                        limit.centre ? " " + units.word("m") : ""));
 }
 
 std::string field_error_text(const std::string& label, const FieldErrorRecord& error) {
-  return text_line(
-      label, fmt::format("{} in L1, {} in L2 (relative)", number_text(error.l1), number_text(error.l2)));
+  return text_line(label, fmt::format("{} in L1, {} in L2 (relative)", number_text(error.l1), number_text(error.l2)));
 }
 
 /// Errors of the fields, or the reason why they are not known.
@@ -176,8 +167,8 @@ std::string exact_answer_text(const ErrorsRecord& errors) {
 std::string coupling_text(const SolveRecord& record) {
   if (!record.end.work.turns) return "";
   return text_line("full coupling",
-                   fmt::format("{} turns of pressure and shear, complementarity gap {}",
-                               *record.end.work.turns, number_text(record.method.pressure_complementarity)));
+                   fmt::format("{} turns of pressure and shear, complementarity gap {}", *record.end.work.turns,
+                               number_text(record.method.pressure_complementarity)));
 }
 
 std::string unit_of(const std::string& number) {
@@ -193,11 +184,10 @@ std::string resolution_text(const ResolutionRecord& resolved, const Units& units
   const auto in = [&](double value) { return short_text(units.of(si, value)); };
   const std::string text = text_line("resolved", fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
                                                              resolved.stick_width, resolved.slip_width));
-  const std::string uncertain =
-      text_line("uncertain", open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}", number,
-                                                in(resolved.absolute), units.word(si), percent,
-                                                in(resolved.mesh), in(resolved.path))
-                                  : "by about " + percent);
+  const std::string uncertain = text_line(
+      "uncertain", open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}", number, in(resolved.absolute),
+                                      units.word(si), percent, in(resolved.mesh), in(resolved.path))
+                        : "by about " + percent);
   return text + uncertain + (resolved.warning.empty() ? "" : text_line("warning", resolved.warning));
 }
 
@@ -222,9 +212,9 @@ std::string continuum_text(const CertificateRecord& certificate, const Units& un
   if (!certificate.continuum) return "";
   const ContinuumRecord& continuum = *certificate.continuum;
   if (std::isnan(continuum.gap)) return text_line("continuum", "no gap: " + continuum.gap.why_missing);
-  std::string text = text_line(
-      "continuum", fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
-                               number_text(continuum.gap), number_text(continuum.quadrature_error)));
+  std::string text =
+      text_line("continuum", fmt::format("gap/energy {} +- {} in all of the contact, not only at the cells' centres",
+                                         number_text(continuum.gap), number_text(continuum.quadrature_error)));
   if (!std::isnan(continuum.low + continuum.high)) {
     const std::string si = unit_of(continuum.number);
     text += text_line("", fmt::format("{} between {} and {} {}, under this friction bound",
@@ -247,13 +237,11 @@ std::string certificate_text(const SolveRecord& record, const Units& units) {
   const CertificateRecord& certificate = record.end.certificate;
   const solver::FrictionKind law = friction_law_of(record.end.friction.law);
   const SlipDirectionRecord& direction = record.method.slip_direction;
-  const std::string angles =
-      fmt::format("{} degrees off in the mean, {} at most ({})", number_text(direction.mean),
-                  number_text(direction.max), right_direction_text(law));
-  return text_line("certificate",
-                   fmt::format("gap/energy {}, moment off by {}, |q| above {} by {}",
-                               number_text(certificate.gap), number_text(certificate.moment),
-                               solver::bound_text(law), number_text(certificate.friction_bound))) +
+  const std::string angles = fmt::format("{} degrees off in the mean, {} at most ({})", number_text(direction.mean),
+                                         number_text(direction.max), right_direction_text(law));
+  return text_line("certificate", fmt::format("gap/energy {}, moment off by {}, |q| above {} by {}",
+                                              number_text(certificate.gap), number_text(certificate.moment),
+                                              solver::bound_text(law), number_text(certificate.friction_bound))) +
          energy_text(record) + continuum_text(certificate, units) +
          text_line("slip direction", direction.mean.why_missing == kNoSlip ? kNoSlip : angles);
 }

@@ -113,8 +113,7 @@ double size_at(const Json& result, const std::string& path) {
   const FoundQuantity found = find_quantity(result, path);
   if (found.value == nullptr) return std::nan("");
   const Json& value = *found.value;
-  if (value.is_array() && value.size() == 2)
-    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  if (value.is_array() && value.size() == 2) return std::hypot(value[0].get<double>(), value[1].get<double>());
   return value.is_number() ? std::abs(value.get<double>()) : std::nan("");
 }
 

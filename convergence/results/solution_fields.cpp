@@ -12,8 +12,7 @@
 
 namespace slipstick::convergence {
 
-std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution,
-                                                  const OracleAnswer& exact) {
+std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution, const OracleAnswer& exact) {
   using solver::Index;
   const solver::Grid grid = solution.grid;
   const Index cells = grid.cells();

@@ -14,8 +14,7 @@ namespace slipstick::convergence {
 
 /// Tractions, pressure, stick, slip and dissipated energy (J/m^2) of a solution, the last two of its step,
 /// and the exact traction where it is known. The columns refer to the solution, which must outlive them.
-std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution,
-                                                  const OracleAnswer& exact);
+std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution, const OracleAnswer& exact);
 
 /// Writes these, for the cells under pressure.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
@@ -31,10 +30,9 @@ struct GridColumns {
   Eigen::ArrayXd pressure;
 };
 
-/// The exact answer on the scene's grid, in the columns of solution_columns() without the slips, which have
-/// no closed form. A cone's pressure is infinite on the axis, where an odd number of cells has a centre.
-/// Throws InputError for an answer without tractions and a grid that does not fit in memory. ranks: the
-/// processes that share the grid.
+/// The exact answer on the scene's grid, in the columns of solution_columns() without the slips, which have no closed
+/// form. A cone's pressure is infinite on the axis, where an odd number of cells has a centre. Throws InputError for an
+/// answer without tractions and a grid that does not fit in memory. ranks: the processes that share the grid.
 GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, const solver::Ranks& ranks = {});
 
 /// Writes these, for the cells under pressure. Throws InputError for a file that cannot be written, too.

@@ -184,8 +184,7 @@ void list_fields(auto& fields, Is<ProfilePoint> auto& point) {
   fields("error", point.error);
 }
 
-// ---------------------------------------------------------------- parts whose keys stand in the result
-// itself
+// ---------------------------------------------------------------- parts whose keys stand in the result itself
 
 void list_friction(auto& fields, Is<FrictionRecord> auto& friction) {
   fields("friction", friction.coefficient);
@@ -334,9 +333,8 @@ void list_exact(auto& fields, Is<SolveRecord> auto& record) {
   auto& [contact, friction, loads, energy, certificate, resolution, errors, work] = record.end;
   fields("profile", record.problem.profile);
   list_model(fields, record.problem);
-  fields.missing(
-      {"operator", "cells", "cell_size", "contact_cells", "stick_cells", "contact_area", "stick_area"},
-      "the exact solution needs no grid");
+  fields.missing({"operator", "cells", "cell_size", "contact_cells", "stick_cells", "contact_area", "stick_area"},
+                 "the exact solution needs no grid");
   fields("contact_radius", contact.contact_radius);
   fields("stick_radius", contact.stick_radius);
   fields.missing({"contact_radius_counted", "stick_radius_counted"}, "there are no cells to count");

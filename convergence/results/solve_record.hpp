@@ -78,8 +78,7 @@ struct FrictionRecord {
   Number force = {};     ///< N, that slides the contact along a line
 };
 
-/// How far the loads could rise, and the motion in which the contact would slide: about a centre or along a
-/// line.
+/// How far the loads could rise, and the motion in which the contact would slide: about a centre or along a line.
 struct LimitRecord {
   Number factor = {};
   std::optional<std::array<double, 2>> centre = {};     ///< m
@@ -248,8 +247,7 @@ struct HistoryRecord {
 
 /// The discrete problem and the method.
 struct ProblemRecord {
-  std::string method =
-      {};  ///< "exact", "program" or a word of solver.method; empty: a history that broke off
+  std::string method = {};  ///< "exact", "program" or a word of solver.method; empty: a history that broke off
   std::string op = {};
   std::string cell_traction = {};
   std::string pressure = {};

@@ -59,9 +59,8 @@ bool changes_both(const Step& from, const Step& to) {
   const auto value = [](const Step& step) {
     return std::visit([](const auto& load) { return load.value; }, step.torsion);
   };
-  return from.normal != to.normal &&
-         (from.torsion.index() != to.torsion.index() || value(from) != value(to) || from.force != to.force ||
-          from.displacement != to.displacement);
+  return from.normal != to.normal && (from.torsion.index() != to.torsion.index() || value(from) != value(to) ||
+                                      from.force != to.force || from.displacement != to.displacement);
 }
 
 /// Whether all shapes are of revolution, about one axis.
@@ -76,9 +75,8 @@ bool has_axis(const Scene& scene) {
 
 /// Means over squares of side x side samples; samples at the far ends that fill no square are cut off.
 ArrayXXd block_means(const ArrayXXd& heights, Index side) {
-  return ArrayXXd::NullaryExpr(heights.rows() / side, heights.cols() / side, [&](Index i, Index j) {
-    return heights.block(i * side, j * side, side, side).mean();
-  });
+  return ArrayXXd::NullaryExpr(heights.rows() / side, heights.cols() / side,
+                               [&](Index i, Index j) { return heights.block(i * side, j * side, side, side).mean(); });
 }
 
 void make_coarse(Scene& scene, double cells) {
@@ -117,8 +115,7 @@ std::optional<Scene> on_few_cells(const Scene& scene, double cells) {
     }
     return coarse;
   }
-  const Index side =
-      std::max(map->map.heights.rows(), map->map.heights.cols()) / static_cast<Index>(4.0 * cells);
+  const Index side = std::max(map->map.heights.rows(), map->map.heights.cols()) / static_cast<Index>(4.0 * cells);
   if (side < 2) return coarse;
   for (Surface& surface : coarse.surfaces) {
     if (surface.shape != Shape::height_map) continue;
@@ -176,8 +173,7 @@ std::vector<double> path_changes(Scene scene, std::size_t steps, bool turns, std
     };
     const double change = change_of(steps - 1);
     for (std::size_t k = 0; k < steps; ++k) {
-      // The errors of a loading and of its reversal cancel in part: what is left was up to 4 times the
-      // change.
+      // The errors of a loading and of its reversal cancel in part: what is left was up to 4 times the change.
       if (!(std::abs(change_of(k)) <= std::abs(change))) return changes;
     }
     changes.push_back(change);
@@ -197,8 +193,8 @@ void shorten(Scene& scene, std::size_t steps) {
 
 bool depends_on_path(const Scene& scene, bool coupled) {
   if (scene.solver.method != Method::coulomb) return false;
-  const bool one_pressure = std::ranges::all_of(
-      scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
+  const bool one_pressure =
+      std::ranges::all_of(scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
   const bool turned_only = std::ranges::none_of(scene.steps, brings_translation);
   return !(one_pressure && !coupled && turned_only && has_axis(scene));
 }

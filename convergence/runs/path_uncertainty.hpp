@@ -18,8 +18,7 @@ bool depends_on_path(const solver::Scene& scene, bool coupled);
 
 class PathUncertainty {
  public:
-  /// Solves the two histories, unless the number of parts cannot matter. solution: of one of the scene's
-  /// steps.
+  /// Solves the two histories, unless the number of parts cannot matter. solution: of one of the scene's steps.
   PathUncertainty(const solver::Scene& scene, const solver::Solution& solution);
 
   /// At the end of a step, counted from 0 over all cycles. Infinite where a coarse history broke off, or a
@@ -42,11 +41,10 @@ struct PathCorrection {
   double uncertainty;
 };
 
-/// Each finer path on a coarser mesh (a combination technique): from n to 4 n parts on a coarse mesh, from
-/// there to 16 n on one with half as many cells, and to the limit of an error c/n + d/n^2. None where the
-/// parts cannot matter, are fewer than kFewestCorrected, a coarse history broke off, an earlier step has a
-/// larger error than the last one (a reversal), or a step changes the normal load and another load. solution:
-/// of the scene's last step.
+/// Each finer path on a coarser mesh (a combination technique): from n to 4 n parts on a coarse mesh, from there to 16
+/// n on one with half as many cells, and to the limit of an error c/n + d/n^2. None where the parts cannot matter, are
+/// fewer than kFewestCorrected, a coarse history broke off, an earlier step has a larger error than the last one (a
+/// reversal), or a step changes the normal load and another load. solution: of the scene's last step.
 std::optional<PathCorrection> path_correction(const solver::Scene& scene, const solver::Solution& solution);
 
 /// solver::solve() with the path's uncertainty in the resolution of each step, where all details are wanted.

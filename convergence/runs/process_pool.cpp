@@ -144,9 +144,8 @@ class TaskQueue {
 
   [[noreturn]] void stop(const std::string& why) const {
     options_.progress->end();
-    throw std::runtime_error(
-        fmt::format("{}: {} points are done and kept in {}; the same command goes on from there", why,
-                    options_.progress->text(), options_.folder.string()));
+    throw std::runtime_error(fmt::format("{}: {} points are done and kept in {}; the same command goes on from there",
+                                         why, options_.progress->text(), options_.folder.string()));
   }
 
   SolveRecord record_of(const PreparedRun& run, std::string failure) const {
@@ -158,9 +157,7 @@ class TaskQueue {
 
   struct PooledWorker {
     PooledWorker(const ProcessPoolOptions& options, std::optional<double> memory_limit, const Task* first)
-        : worker(options.program, options.folder, memory_limit),
-          task(first),
-          rounding(first->run->spec.rounding) {}
+        : worker(options.program, options.folder, memory_limit), task(first), rounding(first->run->spec.rounding) {}
     Worker worker;
     const Task* task;   ///< nullptr: idle
     Rounding rounding;  ///< of all its runs: FFTW keeps plans, which it chose by rounded costs
@@ -284,8 +281,8 @@ std::vector<SolveRecord> ProcessPool::run_prepared(const std::vector<PreparedRun
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
-  const double weight = std::accumulate(tasks.begin(), tasks.end(), 0.0,
-                                        [](double sum, const Task& task) { return sum + task.bytes; });
+  const double weight =
+      std::accumulate(tasks.begin(), tasks.end(), 0.0, [](double sum, const Task& task) { return sum + task.bytes; });
   options_.progress->begin_runs(tasks.size(), weight, known.size());
   TaskQueue queue(std::move(tasks), cache, options_);
   for (auto& [name, record] : starts_programs() ? queue.work() : queue.work_here()) {
@@ -317,8 +314,7 @@ std::vector<SolveRecord> ProcessPool::run_or_refuse(const std::vector<RunSpec>& 
   std::vector<SolveRecord> records;
   auto next = solved.begin();
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    records.push_back(complaints[i].empty() ? *next++
-                                            : not_computed(RunStatus::refused, complaints[i], specs[i]));
+    records.push_back(complaints[i].empty() ? *next++ : not_computed(RunStatus::refused, complaints[i], specs[i]));
   }
   return records;
 }

@@ -30,8 +30,7 @@ void Progress::begin(const std::string& stage, Clock::time_point now) {
   if (found == stages_.end()) return;
   const bool was_kept = stage_asked_ > 0 && stage_runs_ == 0;
   if (next_ > 0 && !was_kept) {  // finished runs that were kept take no time
-    const double part =
-        stage_asked_ > 0 ? static_cast<double>(stage_runs_) / static_cast<double>(stage_asked_) : 1.0;
+    const double part = stage_asked_ > 0 ? static_cast<double>(stage_runs_) / static_cast<double>(stage_asked_) : 1.0;
     done_share_ += part * stages_[next_ - 1].share;
     done_seconds_ += seconds_between(stage_start_, now);
   }

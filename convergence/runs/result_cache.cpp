@@ -23,8 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kPrime = 1099511628211ULL;
 
 /// The JSON of a kept result; its `checksum` is over all other keys.
-Json entry(const std::string& program, const std::string& cache_key, const Json& result,
-           const fs::path& beside) {
+Json entry(const std::string& program, const std::string& cache_key, const Json& result, const fs::path& beside) {
   Json kept{{"program", program}, {"cache_key", cache_key}, {"result", result}};
   if (!beside.empty()) kept["beside"] = file_identity(beside);
   kept["checksum"] = fmt::format("{:016x}", checksum(json_text(kept)));
@@ -51,8 +50,7 @@ std::string file_identity(const fs::path& file) {
   std::uintmax_t size = 0;
   std::uint64_t sum = checksum({});
   do {
-    stream.read(reinterpret_cast<char*>(words.data()),
-                static_cast<std::streamsize>(words.size() * sizeof(words[0])));
+    stream.read(reinterpret_cast<char*>(words.data()), static_cast<std::streamsize>(words.size() * sizeof(words[0])));
     const auto read = static_cast<std::size_t>(stream.gcount());
     for (std::size_t i = 0; i < read / sizeof(words[0]); ++i) {
       sum = checksum_of_word(words[i], sum);
@@ -83,8 +81,7 @@ void ResultCache::keep(const std::string& name, const std::string& cache_key, co
   // may be here: with a slash at its end a name is a folder's, and a result that another has kept stays.
   std::error_code no_folder;
   if (!fs::remove(file(name) / "", no_folder)) {  // with something in it, which may be somebody's
-    fs::rename(file(name) / "", file(name) += fmt::format(".aside-{:08x}", std::random_device{}()),
-               no_folder);
+    fs::rename(file(name) / "", file(name) += fmt::format(".aside-{:08x}", std::random_device{}()), no_folder);
   }
   solver::replace_whole_file(file(name), json_text(entry(program_, cache_key, result, beside), 1) + "\n");
 }

@@ -22,9 +22,7 @@ struct RunRequest {
 };
 
 /// A record that is not kept: its process died, or the machine has too little memory.
-bool has_no_result(const SolveRecord& record) {
-  return record.status == RunStatus::failed || record.out_of_memory;
-}
+bool has_no_result(const SolveRecord& record) { return record.status == RunStatus::failed || record.out_of_memory; }
 
 Json row_json(const ListedRun& listed, const SolveRecord& record) {
   Json row{{"line", listed.line},
@@ -43,8 +41,7 @@ int run_listed(const CLI::App& command, const RunRequest& request, std::ostream&
   for (ListedRun& listed : runs) {
     const std::vector<std::filesystem::path> inputs = input_files(listed.run.scene);
     require_inputs_kept(command, inputs);
-    require_input_kept(fmt::format("{}:{}: fields", request.list, listed.line), listed.run.spec.fields,
-                       inputs);
+    require_input_kept(fmt::format("{}:{}: fields", request.list, listed.line), listed.run.spec.fields, inputs);
     if (!request.runs.output.empty()) listed.folder = request.runs.output;
     by_folder[listed.folder].push_back(listed.run);
   }
@@ -75,13 +72,11 @@ RunCommand add_run_command(CLI::App& app) {
   const auto request = std::make_shared<RunRequest>();
   CLI::App* const command =
       app.add_subcommand("run", "Solve the runs that study, gate or hard have listed, all or one of them");
-  command->add_option("list", request->list, "file that --list-runs has written (a JSON object a line)")
-      ->required();
+  command->add_option("list", request->list, "file that --list-runs has written (a JSON object a line)")->required();
   command->add_option("--only", request->only, "solve the run on this line, counted from 1")
       ->check(CLI::PositiveNumber);
   request->runs.add_to(*command);
-  command->get_option("--output")
-      ->description("folder that keeps finished solves, instead of the one listed");
+  command->get_option("--output")->description("folder that keeps finished solves, instead of the one listed");
   request->runs.add_programs_to(*command);
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --list-runs runs.jsonl\n"

@@ -17,9 +17,8 @@ namespace slipstick::convergence {
 namespace {
 
 constexpr const char* kAllowedRun = "a run, as --list-runs writes it";
-constexpr std::array kRunKeys{"name",        "scene",           "set",          "rounding",
-                              "variant",     "profile",         "stress_error", "fields",
-                              "step_before", "program_version", "output"};
+constexpr std::array kRunKeys{"name",         "scene",  "set",         "rounding",        "variant", "profile",
+                              "stress_error", "fields", "step_before", "program_version", "output"};
 const std::map<std::string, Rounding> kRoundingWords{
     {"nearest", Rounding::nearest}, {"upward", Rounding::upward}, {"downward", Rounding::downward}};
 
@@ -27,17 +26,14 @@ const std::map<std::string, Rounding> kRoundingWords{
 class RunReader {
  public:
   RunReader(const Json& json, const std::string& source) : json_(json), source_(source) {
-    if (!json.is_object())
-      throw solver::InputError(source, fmt::format("is no run; allowed: {}", kAllowedRun));
+    if (!json.is_object()) throw solver::InputError(source, fmt::format("is no run; allowed: {}", kAllowedRun));
     for (const auto& [key, value] : json.items()) {
-      if (std::ranges::find(kRunKeys, key) == kRunKeys.end())
-        fail(key, fmt::format("{}", fmt::join(kRunKeys, ", ")));
+      if (std::ranges::find(kRunKeys, key) == kRunKeys.end()) fail(key, fmt::format("{}", fmt::join(kRunKeys, ", ")));
     }
   }
 
   [[noreturn]] void fail(const std::string& key, const std::string& allowed) const {
-    throw solver::InputError(source_, key, json_.contains(key) ? json_text(json_[key]) : "(missing)",
-                             allowed);
+    throw solver::InputError(source_, key, json_.contains(key) ? json_text(json_[key]) : "(missing)", allowed);
   }
 
   template <typename T>
@@ -131,9 +127,8 @@ std::vector<ListedRun> read_run_list(const std::filesystem::path& file, std::siz
     }
   }
   if (only > number) {
-    throw solver::InputError(
-        fmt::format("--only {}", only),
-        fmt::format("{} has {} lines; allowed: the number of a line", file.string(), number));
+    throw solver::InputError(fmt::format("--only {}", only),
+                             fmt::format("{} has {} lines; allowed: the number of a line", file.string(), number));
   }
   return runs;
 }

@@ -55,9 +55,7 @@ void RunOptions::add_to(CLI::App& command) {
   add_memory_option(command, memory_limit);
 }
 
-void RunOptions::add_programs_to(CLI::App& command) {
-  add_program_options(command, overrides, allow_programs);
-}
+void RunOptions::add_programs_to(CLI::App& command) { add_program_options(command, overrides, allow_programs); }
 
 void RunOptions::add_list_to(CLI::App& command, const std::vector<std::string>& of_judgement) {
   CLI::Option* const option =

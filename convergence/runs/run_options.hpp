@@ -44,8 +44,7 @@ struct RunOptions {
   /// two exclude each other.
   void add_list_to(CLI::App& command, const std::vector<std::string>& of_judgement);
 
-  /// The pool of these options; a signal noted by Interrupts stops it. lacking: gets the runs that
-  /// --list-runs lists.
+  /// The pool of these options; a signal noted by Interrupts stops it. lacking: gets the runs that --list-runs lists.
   ProcessPool pool(std::vector<PreparedRun>* lacking = nullptr) const;
   /// Writes the file of --list-runs, and the command's result; returns its exit code.
   int write_list(const std::vector<PreparedRun>& lacking, std::ostream& text, Json& result) const;

@@ -90,8 +90,7 @@ void measure_in_millimetres(Scene& scene) {
     scene.contact.friction.coefficient *= std::pow(of_stress, 1.0 - scene.contact.friction.exponent);
   for (std::size_t i = 0; i < scene.layer.values.size(); ++i) {
     const solver::LawParameter& parameter = scene.layer.kind->parameters[i];
-    scene.layer.values[i] *=
-        std::pow(kMillimetres, parameter.of_length) * std::pow(of_stress, parameter.of_stress);
+    scene.layer.values[i] *= std::pow(kMillimetres, parameter.of_length) * std::pow(of_stress, parameter.of_stress);
   }
   for (Surface& s : scene.surfaces) {
     for (double* const length : solver::lengths(s)) *length *= kMillimetres;
@@ -126,17 +125,15 @@ struct Transformation {
   const char* word;
   void (*apply)(Scene&);
 };
-constexpr std::array kTransformations{
-    Transformation{Variant::mirrored, "mirrored", mirror},
-    Transformation{Variant::turned, "turned", turn},
-    Transformation{Variant::shifted, "shifted", shift},
-    Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
-    Transformation{Variant::exchanged, "exchanged", exchange},
-    Transformation{Variant::two_threads, "two_threads", use_two_threads}};
+constexpr std::array kTransformations{Transformation{Variant::mirrored, "mirrored", mirror},
+                                      Transformation{Variant::turned, "turned", turn},
+                                      Transformation{Variant::shifted, "shifted", shift},
+                                      Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
+                                      Transformation{Variant::exchanged, "exchanged", exchange},
+                                      Transformation{Variant::two_threads, "two_threads", use_two_threads}};
 static_assert(kTransformations.size() == kVariants.size());
 
-/// Bytes of a file that stands in a key as it is; of a larger one, a height map or a program, its checksum
-/// does.
+/// Bytes of a file that stands in a key as it is; of a larger one, a height map or a program, its checksum does.
 constexpr std::size_t kWholeFile = 65536;
 
 std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {

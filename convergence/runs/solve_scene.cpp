@@ -30,10 +30,8 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   std::vector<StepRecord> steps;
-  solver::SolveOptions to_solver{.observer = {options.progress},
-                                 .cache = options.cache,
-                                 .detail = options.detail,
-                                 .ranks = options.ranks};
+  solver::SolveOptions to_solver{
+      .observer = {options.progress}, .cache = options.cache, .detail = options.detail, .ranks = options.ranks};
   if (options.resumed) {
     steps = options.resumed->steps;
     to_solver.resumed = options.resumed->state;
@@ -59,8 +57,8 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     }
     throw;
   }
-  solved.record = solver::within_double(
-      scene, [&] { return make_record(scene, solved.solution, solved.exact, std::move(steps)); });
+  solved.record =
+      solver::within_double(scene, [&] { return make_record(scene, solved.solution, solved.exact, std::move(steps)); });
   return solved;
 }
 

@@ -61,13 +61,12 @@ SolveRecord solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCac
   };
   try {
     const bool exact = run.scene.solver.model == solver::ModelChoice::exact;
-    if (exact && spec.fields.empty() && !spec.profile)
-      return exact_record(run.scene, require_oracle(run.scene), 0.0);
-    solved = solve_scene(
-        run.scene, {.on_step = on_step,
-                    .rounding = spec.rounding,
-                    .cache = cache,
-                    .programs = {.all = true, .tied_by = own_program(), .version = spec.program_version}});
+    if (exact && spec.fields.empty() && !spec.profile) return exact_record(run.scene, require_oracle(run.scene), 0.0);
+    solved =
+        solve_scene(run.scene, {.on_step = on_step,
+                                .rounding = spec.rounding,
+                                .cache = cache,
+                                .programs = {.all = true, .tied_by = own_program(), .version = spec.program_version}});
   } catch (const solver::OutOfMemory&) {
     throw;
   } catch (const solver::InputError& error) {

@@ -20,8 +20,7 @@ inline constexpr int kNotKept = 3;
 class Worker {
  public:
   /// memory_limit: bytes that one run may take; none: the memory that is free.
-  Worker(const std::filesystem::path& program, const std::filesystem::path& folder,
-         std::optional<double> memory_limit);
+  Worker(const std::filesystem::path& program, const std::filesystem::path& folder, std::optional<double> memory_limit);
 
   /// Starts a run, once the one before is finished. Where the process has ended, next() returns that.
   void start(const RunSpec& run);
@@ -45,10 +44,9 @@ class Worker {
 void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
                     const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache);
 
-/// The main loop of a worker: solves the runs that come on standard input, and writes on standard output when
-/// each is finished. Returns its exit code: kNotKept where a file cannot be written, with a message on
-/// standard error. Throws std::runtime_error if memory runs out, OutOfMemory for a solve that would take more
-/// than `memory_limit`.
+/// The main loop of a worker: solves the runs that come on standard input, and writes on standard output when each is
+/// finished. Returns its exit code: kNotKept where a file cannot be written, with a message on standard error. Throws
+/// std::runtime_error if memory runs out, OutOfMemory for a solve that would take more than `memory_limit`.
 int serve_runs(const std::filesystem::path& folder, std::optional<double> memory_limit);
 
 }  // namespace slipstick::convergence

@@ -57,10 +57,9 @@ void require_contact_seen(const Scene& scene, double pressed, double cells_acros
   throw InputError(
       scene.source.string(), "grid.extent",
       scene.grid.extent ? solver::Units(scene.units).pair_text("m", *scene.grid.extent) : "(missing)",
-      fmt::format(
-          "at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
-          "fills {} in all, too few to choose a mesh by",
-          cells_across / kWellAcross, scene.grid.extent ? "or left out" : "given", kReferenceCells, pressed));
+      fmt::format("at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
+                  "fills {} in all, too few to choose a mesh by",
+                  cells_across / kWellAcross, scene.grid.extent ? "or left out" : "given", kReferenceCells, pressed));
 }
 
 Index longer_side(const Scene& scene) { return std::max(scene.grid.cells[0], scene.grid.cells[1]); }
@@ -115,8 +114,8 @@ double value_of(const Solution& solution, const std::string& path) {
 
 double number_error(const Solution& fine, const Solution& coarse, const std::string& path, double order) {
   const double value = value_of(fine, path);
-  const Limit limit = richardson_limit(
-      {{.size = 1.0, .value = value}, {.size = 2.0, .value = value_of(coarse, path)}}, order);
+  const Limit limit =
+      richardson_limit({{.size = 1.0, .value = value}, {.size = 2.0, .value = value_of(coarse, path)}}, order);
   return std::abs(limit.uncertainty / value);
 }
 
@@ -146,15 +145,13 @@ void require_reachable(const Scene& scene, const AccuracyTarget& target) {
   const std::string option = fmt::format("--accuracy {}", shortest(target.error));
   if (!(target.error > 0.0 && target.error < 1.0)) throw InputError(option, "allowed: above 0 and below 1");
   if (target.of == AccuracyOf::twist && !brings_torsion(scene.steps.back().torsion)) {
-    throw InputError(option,
-                     fmt::format("{} brings no torsion in its last step, so that the twist has no relative "
-                                 "error; allowed: --accuracy-of traction, stick_radius",
-                                 scene.source.string()));
+    throw InputError(option, fmt::format("{} brings no torsion in its last step, so that the twist has no relative "
+                                         "error; allowed: --accuracy-of traction, stick_radius",
+                                         scene.source.string()));
   }
   if (const char* const owner = grid_owner(scene);
       owner != nullptr && scene.solver.model != solver::ModelChoice::exact) {
-    throw InputError(scene.source.string(),
-                     fmt::format("the grid is that of {}: --accuracy cannot choose it", owner));
+    throw InputError(scene.source.string(), fmt::format("the grid is that of {}: --accuracy cannot choose it", owner));
   }
   if (scene.solver.method == solver::Method::paper && scene.solver.model != solver::ModelChoice::exact) {
     throw InputError(scene.source.string(), "solver.method", "\"paper\"",
@@ -175,8 +172,7 @@ bool answers_exactly(const Scene& scene, AccuracyOf of) {
 Scene with_cells(Scene scene, Index longer) {
   const Index own = longer_side(scene);
   for (Index& cells : scene.grid.cells) {
-    cells = std::max<Index>(
-        2, 2 * std::lround(0.5 * static_cast<double>(longer * cells) / static_cast<double>(own)));
+    cells = std::max<Index>(2, 2 * std::lround(0.5 * static_cast<double>(longer * cells) / static_cast<double>(own)));
   }
   return scene;
 }
@@ -185,9 +181,7 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
   if (grid_owner(scene) != nullptr) {
     const solver::Grid grid = solver::make_model(scene).grid;
     const auto longer = static_cast<double>(std::max(grid.n1, grid.n2));
-    return {.longer = longer,
-            .margin = 0.0,
-            .cells_across = 2.0 * std::sqrt(static_cast<double>(grid.cells()) / M_PI)};
+    return {.longer = longer, .margin = 0.0, .cells_across = 2.0 * std::sqrt(static_cast<double>(grid.cells()) / M_PI)};
   }
   Scene coarse = with_cells(scene, kReferenceCells);
   coarse.solver.op = solver::OperatorKind::dcfft;
@@ -210,8 +204,7 @@ Index cells_for(const ContactOnGrid& contact, double across, Index multiple) {
 }
 
 double cells_across(const ContactOnGrid& contact, Index cells) {
-  return contact.cells_across * (static_cast<double>(cells) - contact.margin) /
-         (contact.longer - contact.margin);
+  return contact.cells_across * (static_cast<double>(cells) - contact.margin) / (contact.longer - contact.margin);
 }
 
 InputError out_of_reach(const Scene& scene, const AccuracyTarget& target, double least) {
@@ -234,24 +227,21 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
   return choice;
 }
 
-std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
-                                      const AccuracyTarget& target, const AccuracyChoice& before,
-                                      double reached, double order) {
+std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
+                                      const AccuracyChoice& before, double reached, double order) {
   const double suggested = kRefinementMargin * std::pow(reached / target.of_mesh(), 1.0 / order);
   const double across = cells_across(contact, before.cells);
   if (!(suggested * across <= kMaxCellsAcross)) return std::nullopt;
   const double factor = std::clamp(suggested, kRefinementMargin, kMaxRefinement);
-  const AccuracyChoice next{
-      .cells = cells_for(contact, factor * across),
-      .tolerance = std::max(before.tolerance * std::pow(factor, -order), kTightestTolerance)};
+  const AccuracyChoice next{.cells = cells_for(contact, factor * across),
+                            .tolerance = std::max(before.tolerance * std::pow(factor, -order), kTightestTolerance)};
   if (!fits_in_memory(with_cells(scene, next.cells))) return std::nullopt;
   return next;
 }
 
 double estimation_safety(AccuracyOf of) { return of == AccuracyOf::traction ? kOfNorm : kTwoMeshes; }
 
-ReachedError reached_error(const Scene& scene, const Solution& solution, const ErrorsRecord& errors,
-                           AccuracyOf of) {
+ReachedError reached_error(const Scene& scene, const Solution& solution, const ErrorsRecord& errors, AccuracyOf of) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const AccuracyQuantity quantity = accuracy_quantity(scene, of);
   if (solution.status != solver::Status::converged) return {unknown, "exact", solution.message};
@@ -262,8 +252,8 @@ ReachedError reached_error(const Scene& scene, const Solution& solution, const E
     return {unknown, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
   }
   const double order = order_of(quantity, scene);
-  const double estimate = quantity.is_field() ? field_error(solution, coarse, order)
-                                              : number_error(solution, coarse, quantity.path, order);
+  const double estimate =
+      quantity.is_field() ? field_error(solution, coarse, order) : number_error(solution, coarse, quantity.path, order);
   if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or its error, is zero"};
   return {std::max(estimate, usual_error(solution, of)), "estimated",
           fmt::format("from {} x {} cells, order {}", coarse.grid.n1, coarse.grid.n2, order)};

@@ -36,8 +36,7 @@ struct AccuracyQuantity {
 };
 AccuracyQuantity accuracy_quantity(const solver::Scene& scene, AccuracyOf of);
 
-/// Size of the last step's contact on a coarse grid, which relates cells of a grid to cells across the
-/// contact.
+/// Size of the last step's contact on a coarse grid, which relates cells of a grid to cells across the contact.
 struct ContactOnGrid {
   double longer;        ///< cells along the grid's longer side
   double margin;        ///< cells of these outside the contact, the same number on each mesh
@@ -76,14 +75,14 @@ solver::InputError out_of_reach(const solver::Scene& scene, const AccuracyTarget
 /// The mesh and tolerance for a target by the measured data. estimated: the error will be estimated from two
 /// meshes, and the mesh is chosen for the target over the estimate's safety factor. Throws InputError, with
 /// the least error that a grid reaches, if no grid reaches the target.
-AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact,
-                           const AccuracyTarget& target, bool estimated);
+AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
+                           bool estimated);
 
 /// The next choice after one whose error `reached` is too large; the error falls as cell size to the power
 /// `order`. None if that mesh is finer than kMaxCellsAcross or does not fit in memory.
 std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactOnGrid& contact,
-                                      const AccuracyTarget& target, const AccuracyChoice& before,
-                                      double reached, double order);
+                                      const AccuracyTarget& target, const AccuracyChoice& before, double reached,
+                                      double order);
 
 /// Safety factor of an estimated error.
 double estimation_safety(AccuracyOf of);
@@ -100,7 +99,7 @@ struct ReachedError {
 /// theoretical order p, times Roache's safety factor 3 (1998) for two meshes. For the tractions it is the
 /// root mean square of the differences on the coarser cells over r^p - 1, in which nothing cancels,
 /// times 1.25. It is at least the error measured for smooth contacts on such a mesh.
-ReachedError reached_error(const solver::Scene& scene, const solver::Solution& solution,
-                           const ErrorsRecord& errors, AccuracyOf of);
+ReachedError reached_error(const solver::Scene& scene, const solver::Solution& solution, const ErrorsRecord& errors,
+                           AccuracyOf of);
 
 }  // namespace slipstick::convergence

@@ -90,8 +90,7 @@ double path_left(const Scene& scene, double enough) {
   const std::optional<PathCorrection> correction = path_correction(scene, solution);
   if (!correction) return path_of(solution);
   const double fine = kLeftOfChange * std::abs(correction->change) + kLeftOnMesh;
-  return correction->uncertainty <= enough ? correction->uncertainty
-                                           : std::min(correction->uncertainty, fine);
+  return correction->uncertainty <= enough ? correction->uncertainty : std::min(correction->uncertainty, fine);
 }
 
 /// The scene with the number of parts of its steps that the target needs, found on few cells; target.path
@@ -125,9 +124,8 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
   return scene;
 }
 
-const std::string kNoFinerMesh =
-    fmt::format("a mesh that would is finer than {} cells across the contact, or does not fit in memory",
-                kMaxCellsAcross);
+const std::string kNoFinerMesh = fmt::format(
+    "a mesh that would is finer than {} cells across the contact, or does not fit in memory", kMaxCellsAcross);
 
 const char* const kPathNotKnown =
     "the length of the steps changes this number by an unknown amount: compare with a larger solver.substeps";
@@ -214,9 +212,7 @@ std::string note_on(const Scene& scene) {
       return "the mesh was chosen by data of smooth contacts: this surface is rough";
     }
   }
-  return scene.surfaces.size() > 1
-             ? "the mesh was chosen by data of one round contact: here are several shapes"
-             : "";
+  return scene.surfaces.size() > 1 ? "the mesh was chosen by data of one round contact: here are several shapes" : "";
 }
 
 }  // namespace
@@ -259,9 +255,8 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     target.path = std::isnan(made.path) ? 0.0 : made.path;
     if (made.path > kPathPart * target.error) {
       if (!(made.path < target.error) && (scene.solver.substeps >= kMaxSubsteps || std::isinf(made.path))) {
-        account.not_reached =
-            fmt::format("steps in {} parts have an error of {:.2g}; divide the loads into more steps",
-                        scene.solver.substeps, made.path);
+        account.not_reached = fmt::format("steps in {} parts have an error of {:.2g}; divide the loads into more steps",
+                                          scene.solver.substeps, made.path);
         break;
       }
       make_more_parts(scene, target);
@@ -280,24 +275,21 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
   account.replaced_tolerance = scene.solver.tolerance;
   account.note = note_on(scene);
   if (target.of == AccuracyOf::twist) put_uncertainty(made.answer.record.end, made.to_lower(), made.path);
-  return {
-      std::move(made.answer),
-      {target.error, accuracy_quantity(scene, target.of).name, std::move(made.reached), std::move(account)}};
+  return {std::move(made.answer),
+          {target.error, accuracy_quantity(scene, target.of).name, std::move(made.reached), std::move(account)}};
 }
 
 Accuracy exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
   const Oracle oracle = require_oracle(scene);
   if (!(oracle.relative_uncertainty <= target.error)) {
-    throw InputError(
-        fmt::format("--accuracy {:g}", target.error),
-        fmt::format("allowed: {:.2g} or more, the exact answer's own uncertainty in double precision",
-                    oracle.relative_uncertainty));
+    throw InputError(fmt::format("--accuracy {:g}", target.error),
+                     fmt::format("allowed: {:.2g} or more, the exact answer's own uncertainty in double precision",
+                                 oracle.relative_uncertainty));
   }
-  return {
-      target.error,
-      accuracy_quantity(scene, target.of).name,
-      {oracle.relative_uncertainty, "exact", "the exact solution needs no grid; this is its own uncertainty"},
-      {}};
+  return {target.error,
+          accuracy_quantity(scene, target.of).name,
+          {oracle.relative_uncertainty, "exact", "the exact solution needs no grid; this is its own uncertainty"},
+          {}};
 }
 
 Json to_json(const Accuracy& accuracy) {
@@ -321,29 +313,28 @@ Json to_json(const Accuracy& accuracy) {
 }
 
 std::string accuracy_text(const Accuracy& accuracy) {
-  std::string text =
-      text_line("accuracy", fmt::format("{} of the {}; target {} ({}: {})", short_text(accuracy.error()),
-                                        accuracy.quantity, number_text(accuracy.target), accuracy.reached.how,
-                                        accuracy.reached.why));
+  std::string text = text_line(
+      "accuracy", fmt::format("{} of the {}; target {} ({}: {})", short_text(accuracy.error()), accuracy.quantity,
+                              number_text(accuracy.target), accuracy.reached.how, accuracy.reached.why));
   if (!accuracy.grid) return text;
   const GridAccuracy& grid = *accuracy.grid;
   if (grid.uncertainty) {
-    text += text_line("uncertainty", fmt::format("{} of it (95 %), the mean of {} grids",
-                                                 short_text(*grid.uncertainty), kShiftedGrids));
+    text += text_line("uncertainty", fmt::format("{} of it (95 %), the mean of {} grids", short_text(*grid.uncertainty),
+                                                 kShiftedGrids));
   }
   if (grid.substeps > 1) {
-    text += text_line("steps", fmt::format("each in {} parts, which have an error of {}", grid.substeps,
-                                           short_text(grid.path)));
+    text += text_line("steps",
+                      fmt::format("each in {} parts, which have an error of {}", grid.substeps, short_text(grid.path)));
   }
   if (grid.not_reached) text += text_line("not reached", *grid.not_reached);
   for (const AttemptAccount& attempt : grid.attempts) {
-    text += text_line("attempt", fmt::format("{} x {} cells, tolerance {}: error {}, {} s", attempt.cells[0],
-                                             attempt.cells[1], short_text(attempt.tolerance),
-                                             short_text(attempt.error), short_text(attempt.seconds)));
+    text += text_line(
+        "attempt", fmt::format("{} x {} cells, tolerance {}: error {}, {} s", attempt.cells[0], attempt.cells[1],
+                               short_text(attempt.tolerance), short_text(attempt.error), short_text(attempt.seconds)));
   }
-  text += text_line("replaced", fmt::format("grid.cells = [{}, {}] and solver.tolerance = {} of the scene",
-                                            grid.replaced_cells[0], grid.replaced_cells[1],
-                                            short_text(grid.replaced_tolerance)));
+  text += text_line("replaced",
+                    fmt::format("grid.cells = [{}, {}] and solver.tolerance = {} of the scene", grid.replaced_cells[0],
+                                grid.replaced_cells[1], short_text(grid.replaced_tolerance)));
   if (!grid.note.empty()) text += text_line("note", grid.note);
   return text;
 }

@@ -12,13 +12,11 @@
 
 /// Solves to a relative error:
 /// 1. On few cells finds the number of parts of the steps whose error is within its part of the target.
-/// 2. Chooses mesh and tolerance from measured data; for the twist of a smooth contact the answer is the mean
-/// over
+/// 2. Chooses mesh and tolerance from measured data; for the twist of a smooth contact the answer is the mean over
 ///    shifted grids.
 /// 3. Solves, and determines the error: against the exact answer, from two meshes, or from the scatter of the
 ///    shifted grids.
-/// 4. While the error is above the target: more parts of the steps, or a finer mesh, up to kMaxRefinements
-/// times.
+/// 4. While the error is above the target: more parts of the steps, or a finer mesh, up to kMaxRefinements times.
 namespace slipstick::convergence {
 
 /// One solve, or one mean over shifted grids.
@@ -34,9 +32,9 @@ struct AttemptAccount {
 /// The account of an answer on grids.
 struct GridAccuracy {
   std::vector<AttemptAccount> attempts;
-  double path = 0.0;                  ///< relative error by the length of the steps; NaN: not known
-  int substeps = 1;                   ///< parts of each step
-  std::optional<double> uncertainty;  ///< of a mean over shifted grids, relative
+  double path = 0.0;                              ///< relative error by the length of the steps; NaN: not known
+  int substeps = 1;                               ///< parts of each step
+  std::optional<double> uncertainty;              ///< of a mean over shifted grids, relative
   std::array<solver::Index, 2> replaced_cells{};  ///< the scene's cells and tolerance, which were replaced
   double replaced_tolerance = 0.0;
   std::optional<std::string> not_reached;  ///< why the target was not reached; none: it was

@@ -24,8 +24,7 @@ class Checkpoint {
   /// executable and for a damaged file.
   std::shared_ptr<const FinishedSteps> read() const;
 
-  /// Replaces the file in one step, so that a complete file is always on disk. Throws InputError if that
-  /// fails.
+  /// Replaces the file in one step, so that a complete file is always on disk. Throws InputError if that fails.
   void write(const solver::HistoryState& state, const std::vector<StepRecord>& steps) const;
 
  private:
@@ -34,8 +33,7 @@ class Checkpoint {
   std::string program_;  ///< identifies the executable
 };
 
-/// Writes a checkpoint after the first step, then whenever writing takes at most 1 % of the time since the
-/// last.
+/// Writes a checkpoint after the first step, then whenever writing takes at most 1 % of the time since the last.
 class PacedCheckpoint {
  public:
   explicit PacedCheckpoint(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}

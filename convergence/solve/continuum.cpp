@@ -86,8 +86,7 @@ class Imposed {
 };
 
 /// Both ends of the interval of the number that is open.
-std::pair<Number, Number> interval(const Imposed& imposed, const Solution& solution,
-                                   const ContinuumGap& found,
+std::pair<Number, Number> interval(const Imposed& imposed, const Solution& solution, const ContinuumGap& found,
                                    const std::shared_ptr<solver::SolveCache>& cache) try {
   const double here = imposed.value();
   const auto [at_low, at_high] = imposed.potential(solution, found);
@@ -125,8 +124,8 @@ void add_pressure(ContinuumRecord& record, const Scene& scene, const Solution& s
     record.friction_bound_error =
         number_or(solver::friction_bound_error(scene, solution, found) / record.energy, broken);
   } catch (const std::invalid_argument& refused) {
-    for (Number* const number : {&record.pressure_gap, &record.pressure_energy,
-                                 &record.pressure_quadrature_error, &record.friction_bound_error}) {
+    for (Number* const number : {&record.pressure_gap, &record.pressure_energy, &record.pressure_quadrature_error,
+                                 &record.friction_bound_error}) {
       if (std::isnan(*number)) number->why_missing = refused.what();
     }
   }
@@ -153,8 +152,7 @@ ContinuumRecord continuum_record(const Scene& scene, const Solution& solution) t
   return {missing, missing, missing, "", missing, missing, missing, missing, missing, missing};
 }
 
-ProvenAnswer solve_until_proven(Scene scene, double width,
-                                const std::function<SolvedScene(const Scene&)>& solve) {
+ProvenAnswer solve_until_proven(Scene scene, double width, const std::function<SolvedScene(const Scene&)>& solve) {
   constexpr int kMaxAttempts = 6;
   constexpr double kMargin = 1.2;  // the width falls with the cells' size, or a little faster
   ProvenAnswer answer{scene, {}, {{"wanted", width}, {"attempts", Json::array()}}, ""};
@@ -172,8 +170,7 @@ ProvenAnswer solve_until_proven(Scene scene, double width,
     }
     const ContinuumRecord& found = *answer.solved.record.end.certificate.continuum;
     const std::string why = found.low.why_missing + found.high.why_missing;
-    const Number reached =
-        number_or((found.high - found.low) / (0.5 * std::abs(found.high + found.low)), why);
+    const Number reached = number_or((found.high - found.low) / (0.5 * std::abs(found.high + found.low)), why);
     Json made{{"cells", scene.grid.cells}};
     set_number(made, "width", reached);
     answer.account["attempts"].push_back(std::move(made));

@@ -30,15 +30,12 @@ MeasuredMesh mesh_of(const toml::table& table) {
                     .tolerances = values_in(table["tolerances"]),
                     .work = values_in(table["work"])};
   for (const auto& [word, of] : accuracy_words()) {
-    mesh.errors[static_cast<std::size_t>(of)] = {value_in(table[word]["error"]),
-                                                 value_in(table[word]["tolerance"])};
+    mesh.errors[static_cast<std::size_t>(of)] = {value_in(table[word]["error"]), value_in(table[word]["tolerance"])};
   }
   return mesh;
 }
 
-const MeasuredError& at(const MeasuredMesh& mesh, AccuracyOf of) {
-  return mesh.errors[static_cast<std::size_t>(of)];
-}
+const MeasuredError& at(const MeasuredMesh& mesh, AccuracyOf of) { return mesh.errors[static_cast<std::size_t>(of)]; }
 
 /// Index of the finer of the two neighbouring meshes between which to interpolate.
 template <typename Reached>
@@ -48,8 +45,7 @@ std::size_t finer_of_pair(const AccuracyData& data, Reached reached) {
   return i;
 }
 
-/// Work on one mesh, linear in log(tolerance) between its tolerances: iterations gain digits at a constant
-/// rate.
+/// Work on one mesh, linear in log(tolerance) between its tolerances: iterations gain digits at a constant rate.
 double work_on(const MeasuredMesh& mesh, double tolerance) {
   const auto& t = mesh.tolerances;
   if (tolerance >= t.front()) return mesh.work.front();
@@ -64,9 +60,8 @@ double work_on(const MeasuredMesh& mesh, double tolerance) {
 }  // namespace
 
 const solver::Words<AccuracyOf>& accuracy_words() {
-  static const solver::Words<AccuracyOf> words{{"twist", AccuracyOf::twist},
-                                               {"traction", AccuracyOf::traction},
-                                               {"stick_radius", AccuracyOf::stick_radius}};
+  static const solver::Words<AccuracyOf> words{
+      {"twist", AccuracyOf::twist}, {"traction", AccuracyOf::traction}, {"stick_radius", AccuracyOf::stick_radius}};
   return words;
 }
 
@@ -86,13 +81,11 @@ Needed needed_for(const AccuracyData& data, AccuracyOf of, double error) {
     // The tolerance falls in proportion to the error.
     return {finest.cells_across * finer, at(finest, of).tolerance * error / at(finest, of).error};
   }
-  const std::size_t i =
-      finer_of_pair(data, [&](const MeasuredMesh& mesh) { return at(mesh, of).error <= error; });
+  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return at(mesh, of).error <= error; });
   const MeasuredMesh& coarse = data.meshes[i - 1];
   const MeasuredMesh& fine = data.meshes[i];
-  return {
-      power_between(error, at(coarse, of).error, coarse.cells_across, at(fine, of).error, fine.cells_across),
-      at(fine, of).tolerance};
+  return {power_between(error, at(coarse, of).error, coarse.cells_across, at(fine, of).error, fine.cells_across),
+          at(fine, of).tolerance};
 }
 
 double error_with(const AccuracyData& data, AccuracyOf of, double across) {
@@ -101,12 +94,10 @@ double error_with(const AccuracyData& data, AccuracyOf of, double across) {
   if (across > finest.cells_across) {
     return at(finest, of).error * std::pow(finest.cells_across / across, falling_order(data, of));
   }
-  const std::size_t i =
-      finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
+  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
   const MeasuredMesh& coarse = data.meshes[i - 1];
   const MeasuredMesh& fine = data.meshes[i];
-  return power_between(across, coarse.cells_across, at(coarse, of).error, fine.cells_across,
-                       at(fine, of).error);
+  return power_between(across, coarse.cells_across, at(coarse, of).error, fine.cells_across, at(fine, of).error);
 }
 
 double falling_order(const AccuracyData& data, AccuracyOf of) {
@@ -114,13 +105,11 @@ double falling_order(const AccuracyData& data, AccuracyOf of) {
   const std::size_t back = std::min<std::size_t>(data.meshes.size(), 3);
   const MeasuredMesh& coarse = data.meshes[data.meshes.size() - back];
   const MeasuredMesh& fine = data.meshes.back();
-  return std::log(at(coarse, of).error / at(fine, of).error) /
-         std::log(fine.cells_across / coarse.cells_across);
+  return std::log(at(coarse, of).error / at(fine, of).error) / std::log(fine.cells_across / coarse.cells_across);
 }
 
 double work_of(const AccuracyData& data, double across, double tolerance) {
-  const std::size_t i =
-      finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
+  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
   const MeasuredMesh& coarse = data.meshes[i - 1];
   const MeasuredMesh& fine = data.meshes[i];
   if (across <= coarse.cells_across) return work_on(coarse, tolerance);

@@ -35,8 +35,7 @@ struct AccuracyData {
   std::vector<MeasuredMesh> meshes;  ///< finer and finer, at least two
 };
 
-/// The data of accuracy.toml, which `bench --accuracy-data` writes: errors and tolerances fall from mesh to
-/// mesh.
+/// The data of accuracy.toml, which `bench --accuracy-data` writes: errors and tolerances fall from mesh to mesh.
 AccuracyData accuracy_data();
 
 /// The mesh and the tolerance that reach an error.

@@ -117,21 +117,19 @@ SolvePlan plan_solve(const Scene& scene, int ranks) {
     require_oracle(scene);
     return {};
   }
-  const solver::Model model =
-      solver::make_model(scene, ranks > 1 ? solver::Ranks::planned(ranks) : solver::Ranks());
+  const solver::Model model = solver::make_model(scene, ranks > 1 ? solver::Ranks::planned(ranks) : solver::Ranks());
   const ContactOnGrid contact = contact_on_grid(scene);
   const double radius = 0.5 * cells_across(contact, std::max(model.grid.n1, model.grid.n2));
   const solver::Reduction& part = model.pressure_part;
   const double mirrored = (part.quadrant() ? 4.0 : 1.0) * (part.diagonal() ? 2.0 : 1.0);
-  return {
-      .cells = {{model.grid.n1, model.grid.n2}},
-      .tolerance = scene.solver.tolerance,
-      .unknowns = std::round(2.0 * M_PI * radius * radius / mirrored),
-      .bytes = solver::predicted_memory(scene, model).total(),
-      .least_bytes = solver::predicted_memory(scene, model, {.pressure = 0.0, .tractions = 0.0}).total(),
-      .ranks = ranks,
-      .sent_bytes = ranks > 1 ? solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel()) : 0.0,
-      .seconds = predicted_seconds(scene, contact)};
+  return {.cells = {{model.grid.n1, model.grid.n2}},
+          .tolerance = scene.solver.tolerance,
+          .unknowns = std::round(2.0 * M_PI * radius * radius / mirrored),
+          .bytes = solver::predicted_memory(scene, model).total(),
+          .least_bytes = solver::predicted_memory(scene, model, {.pressure = 0.0, .tractions = 0.0}).total(),
+          .ranks = ranks,
+          .sent_bytes = ranks > 1 ? solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel()) : 0.0,
+          .seconds = predicted_seconds(scene, contact)};
 }
 
 StressPlan plan_stresses(const StressFiles& files, const Scene& scene) {
@@ -163,38 +161,33 @@ Json to_json(const SolvePlan& plan) {
           {"bytes", plan.bytes},
           {"least_bytes", plan.least_bytes}};
   if (plan.ranks > 1) json.update({{"ranks", plan.ranks}, {"sent_bytes", plan.sent_bytes}});
-  set_number(json, "seconds", plan.seconds,
-             "measured only for method = \"coulomb\" with operator = \"dcfft\"");
-  json.emplace(
-      "seconds_from",
-      fmt::format("work measured on the paper's sphere, in applications on {0} x {0} cells timed on this "
-                  "machine",
-                  kReferenceCells));
+  set_number(json, "seconds", plan.seconds, "measured only for method = \"coulomb\" with operator = \"dcfft\"");
+  json.emplace("seconds_from",
+               fmt::format("work measured on the paper's sphere, in applications on {0} x {0} cells timed on this "
+                           "machine",
+                           kReferenceCells));
   if (plan.grids > 1) json.emplace("grids", plan.grids);
   if (!plan.note.empty()) json.emplace("note", plan.note);
   if (const auto& stresses = plan.stresses)
-    json["stresses"] = {
-        {"planes", stresses->planes}, {"bytes", stresses->bytes}, {"seconds", stresses->seconds}};
+    json["stresses"] = {{"planes", stresses->planes}, {"bytes", stresses->bytes}, {"seconds", stresses->seconds}};
   return json;
 }
 
 std::string plan_text(const SolvePlan& plan) {
   if (!plan.cells) return text_line("plan", kNoGrid);
   const bool shared = plan.ranks > 1;
-  const std::string of_rank =
-      shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application", plan.ranks,
-                           number_text(plan.sent_bytes))
-             : "";
-  std::string text =
-      text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}",
-                                    plan.grids > 1 ? fmt::format("{} grids of ", plan.grids) : "",
-                                    (*plan.cells)[0], (*plan.cells)[1], number_text(plan.unknowns),
-                                    number_text(plan.least_bytes), number_text(plan.bytes), of_rank,
-                                    short_text(plan.seconds), shared ? " on one" : ""));
+  const std::string of_rank = shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application",
+                                                   plan.ranks, number_text(plan.sent_bytes))
+                                     : "";
+  std::string text = text_line(
+      "plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}",
+                          plan.grids > 1 ? fmt::format("{} grids of ", plan.grids) : "", (*plan.cells)[0],
+                          (*plan.cells)[1], number_text(plan.unknowns), number_text(plan.least_bytes),
+                          number_text(plan.bytes), of_rank, short_text(plan.seconds), shared ? " on one" : ""));
   if (const auto& stresses = plan.stresses)
-    text += text_line("stresses", fmt::format("{} planes, {} bytes, about {} s after the solve",
-                                              number_text(stresses->planes), number_text(stresses->bytes),
-                                              short_text(stresses->seconds)));
+    text += text_line("stresses",
+                      fmt::format("{} planes, {} bytes, about {} s after the solve", number_text(stresses->planes),
+                                  number_text(stresses->bytes), short_text(stresses->seconds)));
   return plan.note.empty() ? text : text + text_line("note", plan.note);
 }
 

@@ -35,8 +35,7 @@ std::vector<UncertainInput> numbers_of(const SceneFile& scene) {
       const std::size_t blank = std::min(text.find(' '), text.size());
       const auto value = number_of(std::string_view(text).substr(0, blank));
       if (!value || *value == 0.0 || name.ends_with("seed")) continue;
-      numbers.push_back(
-          {.key = table + "." + name, .value = *value, .unit = text.substr(blank), .relative = 0});
+      numbers.push_back({.key = table + "." + name, .value = *value, .unit = text.substr(blank), .relative = 0});
     }
   }
   return numbers;
@@ -46,15 +45,12 @@ double percentage_of(const std::string& word, const std::string& text) {
   const bool percent = text.ends_with('%');
   const auto value = number_of(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
   if (!percent || !value || !(*value > 0 && *value < 100)) {
-    throw solver::InputError("--uncertain " + word,
-                             "allowed: key=P%, with P above 0 and below 100, as in friction=5%");
+    throw solver::InputError("--uncertain " + word, "allowed: key=P%, with P above 0 and below 100, as in friction=5%");
   }
   return *value / 100;
 }
 
-bool stands_for(const std::string& name, const std::string& key) {
-  return key == name || key.ends_with("." + name);
-}
+bool stands_for(const std::string& name, const std::string& key) { return key == name || key.ends_with("." + name); }
 
 }  // namespace
 
@@ -80,9 +76,8 @@ std::vector<UncertainInput> uncertain_inputs(const SceneFile& scene, const std::
     if (known) continue;
     std::vector<std::string> allowed;
     for (const UncertainInput& number : numbers) allowed.push_back(number.key);
-    throw solver::InputError(
-        "--uncertain " + word,
-        fmt::format("allowed: numbers of the scene that are not zero, {}", fmt::join(allowed, ", ")));
+    throw solver::InputError("--uncertain " + word, fmt::format("allowed: numbers of the scene that are not zero, {}",
+                                                                fmt::join(allowed, ", ")));
   }
   return inputs;
 }

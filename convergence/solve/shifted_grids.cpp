@@ -54,8 +54,7 @@ constexpr solver::Index kFinerFormCells = 160;
 /// Largest number of parts of all steps together in that solve.
 constexpr long kFormParts = 300;
 constexpr double kNarrowRing = 0.06;
-/// Least stick radius, in cells, in the formula for the spread of the grids: bounds the difference of their
-/// cells.
+/// Least stick radius, in cells, in the formula for the spread of the grids: bounds the difference of their cells.
 constexpr double kMinSpreadStickCells = 4.0;
 
 bool has_tip(const Scene& scene) {
@@ -71,8 +70,7 @@ double expected_uncertainty(const Scene& scene, double across, const ContactForm
   const double stick = std::max(form.stick_ratio, kMinStickRatio);
   const double front = form.slender * std::hypot(kFront, kCurvedFront / (stick * radius)) / stick;
   const double ring = 1.0 - form.stick_ratio;
-  const double slip =
-      std::min(std::hypot(kNarrowSlip, kRingInCell / (ring * radius)) / ring, kNoRing * radius);
+  const double slip = std::min(std::hypot(kNarrowSlip, kRingInCell / (ring * radius)) / ring, kNoRing * radius);
   const double tip = has_tip(scene) ? kTip / (stick * stick * std::sqrt(radius)) : 0.0;
   return std::hypot(front, slip, tip) * std::pow(radius, -kShiftedOrder);
 }
@@ -191,16 +189,14 @@ AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, 
                               const ContactForm& form) {
   const double least = target.path + expected_error(scene, kMaxCellsAcross, form);
   if (!(target.error >= least)) throw out_of_reach(scene, target, least);
-  AccuracyChoice choice{
-      .cells = cells_for(contact, across_for(scene, target, form), 2),
-      .tolerance = std::clamp(kToleranceOfError * target.error, kTightestTolerance, kLoosest)};
+  AccuracyChoice choice{.cells = cells_for(contact, across_for(scene, target, form), 2),
+                        .tolerance = std::clamp(kToleranceOfError * target.error, kTightestTolerance, kLoosest)};
   solver::make_model(with_cells(scene, choice.cells));  // throws if it does not fit in memory
   return choice;
 }
 
-ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity,
-                                    const ContactForm& form, const ContactOnGrid& contact,
-                                    const GridSolve& solve) {
+ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity, const ContactForm& form,
+                                    const ContactOnGrid& contact, const GridSolve& solve) {
   const double radius = 0.5 * cells_across(contact, std::max(scene.grid.cells[0], scene.grid.cells[1]));
   const std::vector<Scene> scenes = shifted(scene, form.stick_ratio * radius);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -227,8 +223,7 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   const double expected = expected_uncertainty(scene, 2.0 * radius, form);
   // The sum covers 96 of 100 errors of 60 random histories of torsion on four meshes each.
   found.uncertainty = is_beyond_data(scene) ? expected + scatter : std::max(kOfScatter * scatter, expected);
-  found.why =
-      fmt::format("by data on such meshes and the scatter of {} grids, {:.2g}", values.size(), scatter);
+  found.why = fmt::format("by data on such meshes and the scatter of {} grids, {:.2g}", values.size(), scatter);
   double mean = moments.mean;
   if (!std::isfinite(found.error)) found.path = path_correction(scene, found.answer.solution);
   if (found.path) {

@@ -10,17 +10,15 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accuracy.hpp"
 
-/// One number from several grids. With smooth cell tractions (solver::CellTraction) the main error of one
-/// grid is the staircase of its cells along the edges of contact and stick area. It changes its sign as the
-/// grid is shifted under the edges, so the mean over shifted grids has a much smaller error, and the scatter
-/// measures it.
+/// One number from several grids. With smooth cell tractions (solver::CellTraction) the main error of one grid is the
+/// staircase of its cells along the edges of contact and stick area. It changes its sign as the grid is shifted under
+/// the edges, so the mean over shifted grids has a much smaller error, and the scatter measures it.
 namespace slipstick::convergence {
 
 /// Solves a scene on its grid, in this detail.
 using GridSolve = std::function<SolvedScene(const solver::Scene&, solver::Detail)>;
 
-/// Grids of a mean. Their stick radii, in cells, are spread evenly over one cell, the period of the
-/// staircase.
+/// Grids of a mean. Their stick radii, in cells, are spread evenly over one cell, the period of the staircase.
 inline constexpr int kShiftedGrids = 3;
 /// Power of the cell size with which the mean's uncertainty falls, measured on the paper's sphere.
 inline constexpr double kShiftedOrder = 2.5;
@@ -44,8 +42,8 @@ ContactForm coarse_form(const solver::Scene& scene, const AccuracyTarget& target
 
 /// The mesh on which the mean's expected uncertainty is within the target. Throws InputError, with the least
 /// error that a mesh reaches, if there is none, and if the mesh does not fit in memory.
-AccuracyChoice choose_shifted(const solver::Scene& scene, const ContactOnGrid& contact,
-                              const AccuracyTarget& target, const ContactForm& form);
+AccuracyChoice choose_shifted(const solver::Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
+                              const ContactForm& form);
 
 struct ShiftedGrid {
   std::array<double, 2> extent;  ///< m
@@ -64,7 +62,6 @@ struct ShiftedMean {
   std::optional<PathCorrection> path = {};
 };
 ShiftedMean mean_over_shifted_grids(const solver::Scene& scene, const AccuracyQuantity& quantity,
-                                    const ContactForm& form, const ContactOnGrid& contact,
-                                    const GridSolve& solve);
+                                    const ContactForm& form, const ContactOnGrid& contact, const GridSolve& solve);
 
 }  // namespace slipstick::convergence

@@ -36,19 +36,17 @@ struct SolveWords {
 };
 
 void add_accuracy_options(CLI::App& command, SolveWords& words) {
-  command.add_option(
-      "--model", words.model,
-      "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
-      "axisymmetric scene); as --set solver.model=...");
+  command.add_option("--model", words.model,
+                     "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
+                     "axisymmetric scene); as --set solver.model=...");
   command.add_option("--accuracy", words.accuracy,
                      "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless "
                      "solver.model is given, the model; the result has the error that was reached");
   std::vector<std::string> quantities;
   for (const auto& [word, of] : accuracy_words()) quantities.push_back(word);
   command
-      .add_option(
-          "--accuracy-of", words.accuracy_of,
-          "quantity whose error --accuracy bounds; where the twist is imposed, twist means the moment")
+      .add_option("--accuracy-of", words.accuracy_of,
+                  "quantity whose error --accuracy bounds; where the twist is imposed, twist means the moment")
       ->check(CLI::IsMember(quantities))
       ->capture_default_str();
   command
@@ -70,8 +68,7 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
                       "take more cells until the interval of --continuum is this narrow, relative to the "
                       "number in it, e.g. 1e-2")
           ->check(CLI::Range(1e-6, 1.0));
-  for (const char* const option : {"--plan", "--accuracy", "--uncertain"})
-    proven->excludes(command.get_option(option));
+  for (const char* const option : {"--plan", "--accuracy", "--uncertain"}) proven->excludes(command.get_option(option));
   command
       .add_option("--ranks", words.request.planned_ranks,
                   "with --plan: number of MPI ranks that share the solve; the memory is that of one rank")
@@ -81,10 +78,9 @@ void add_accuracy_options(CLI::App& command, SolveWords& words) {
 }
 
 void add_file_options(CLI::App& command, SolveWords& words) {
-  command.add_option(
-      "--fields", words.request.files.fields,
-      "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
-      "last step, or each step to its own file where the name holds {step}");
+  command.add_option("--fields", words.request.files.fields,
+                     "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
+                     "last step, or each step to its own file where the name holds {step}");
   command
       .add_option("--checkpoint", words.request.checkpoint.file,
                   "write checkpoints of a load history to this HDF5 file, after the first step and then as "
@@ -94,13 +90,11 @@ void add_file_options(CLI::App& command, SolveWords& words) {
       .add_flag("--resume", words.request.checkpoint.resume,
                 "continue from the --checkpoint file if it exists; the result is the same as without a break")
       ->needs(command.get_option("--checkpoint"));
-  command.add_option(
-      "--figure", words.request.files.figure,
-      "draw slip and stick, tractions and pressure, and of a history its loop: .svg, .pdf or .png; "
-      "of the last step, or of each step where the name holds {step}");
-  command.add_option(
-      "--loop", words.request.files.loop,
-      "write loads, motions and energies at the end of each step of a history, a row a step: .csv");
+  command.add_option("--figure", words.request.files.figure,
+                     "draw slip and stick, tractions and pressure, and of a history its loop: .svg, .pdf or .png; "
+                     "of the last step, or of each step where the name holds {step}");
+  command.add_option("--loop", words.request.files.loop,
+                     "write loads, motions and energies at the end of each step of a history, a row a step: .csv");
 }
 
 void add_stress_options(CLI::App& command, StressFiles& stresses) {
@@ -118,10 +112,9 @@ void add_stress_options(CLI::App& command, StressFiles& stresses) {
   file->needs(depths);
   depths->needs(file);
   command
-      .add_option(
-          "--stress-figure", stresses.figure,
-          "draw von Mises' and the largest shear stress of the volume in the planes through the largest one: "
-          ".svg, .pdf or .png; of both bodies where it holds {body}")
+      .add_option("--stress-figure", stresses.figure,
+                  "draw von Mises' and the largest shear stress of the volume in the planes through the largest one: "
+                  ".svg, .pdf or .png; of both bodies where it holds {body}")
       ->needs(file);
   const auto add_coefficient = [&](const char* name, std::optional<double>& coefficient, const char* help) {
     command.add_option(name, coefficient, help)
@@ -149,10 +142,9 @@ void require_cells_of_steps(const SolveRequest& request) {
   const bool exact = request.scene.solver.model == solver::ModelChoice::exact;
   if (!exact && request.checkpoint.file.empty()) return;
   throw InputError("--figure " + request.files.figure,
-                   exact
-                       ? "allowed: a name without {step}: an exact solution has the cells of the last step"
-                       : "allowed: a name without {step}: with --checkpoint the steps before a break are not "
-                         "drawn (--fields takes {step})");
+                   exact ? "allowed: a name without {step}: an exact solution has the cells of the last step"
+                         : "allowed: a name without {step}: with --checkpoint the steps before a break are not "
+                           "drawn (--fields takes {step})");
 }
 
 /// Throws InputError where a file of the scene would be overwritten.
@@ -270,8 +262,7 @@ RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
   words->request.ranks = ranks;
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
   command->add_option("scene", words->request.source.file, "scene file (TOML)")->required();
-  add_set_option(*command, words->request.source.overrides,
-                 "override a key of the scene, e.g. load.moment_ratio=0.5");
+  add_set_option(*command, words->request.source.overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
   add_program_options(*command, words->request.source.overrides, words->allow_programs);
   add_accuracy_options(*command, *words);
   add_file_options(*command, *words);

@@ -37,8 +37,7 @@ constexpr std::string_view kStep = "{step}";
 
 /// Rewrites one line on a terminal; writes nothing to a file or pipe.
 void show_progress(int iteration, double change) {
-  if (isatty(STDERR_FILENO) != 0)
-    std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
+  if (isatty(STDERR_FILENO) != 0) std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
 /// The cells of each step, in a temporary folder.
@@ -63,14 +62,13 @@ void write_files(const SolveRequest& request, const Json& result, const WriteFie
 
 /// The names of its columns are those that `check` reads from a loop.
 std::string loop_table(const SolveRecord& record) {
-  std::string table =
-      "step,normal_load,moment,rotation,force_1,force_2,displacement_1,displacement_2,dissipated\n";
+  std::string table = "step,normal_load,moment,rotation,force_1,force_2,displacement_1,displacement_2,dissipated\n";
   std::size_t number = 0;
   const auto add = [&](const EndRecord& end) {
     const auto& [force, displacement] = std::tie(end.loads.force.values, end.loads.displacement.values);
     table += fmt::format("{},{},{},{},{},{},{},{},{}\n", ++number, end.contact.normal_load.value,
-                         end.loads.moment.value, end.loads.twist_angle.value, force[0], force[1],
-                         displacement[0], displacement[1], end.energy.dissipated.value);
+                         end.loads.moment.value, end.loads.twist_angle.value, force[0], force[1], displacement[0],
+                         displacement[1], end.energy.dissipated.value);
   };
   if (!record.history) add(record.end);
   for (const StepRecord& step : record.history.value_or(HistoryRecord()).steps) add(step.end);
@@ -85,12 +83,10 @@ void report(const SolveRequest& request, const SolveRecord& record) {
   if (!request.files.loop.empty()) write_option_file("--loop", request.files.loop, loop_table(record));
 }
 
-void write_answer(const SolveRequest& request, const SolvedScene& answer, std::ostream& text,
-                  const Json& result) {
+void write_answer(const SolveRequest& request, const SolvedScene& answer, std::ostream& text, const Json& result) {
   text << solve_text(answer.record, solver::Units(request.scene.units));
   report(request, answer.record);
-  write_files(request, result,
-              [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
+  write_files(request, result, [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
 }
 
 /// Solves. If an error ends a history after some steps, the result gets these.
@@ -126,8 +122,7 @@ SolveSceneOptions grid_options(const SolveRequest& request, std::size_t finished
 }
 
 /// The steps that the checkpoint has; null: none. Throws InputError for a file that exists without --resume.
-std::shared_ptr<const FinishedSteps> finished_steps(const Checkpoint& checkpoint,
-                                                    const SolveRequest& request) {
+std::shared_ptr<const FinishedSteps> finished_steps(const Checkpoint& checkpoint, const SolveRequest& request) {
   const std::string& file = request.checkpoint.file;
   if (!request.checkpoint.resume && std::filesystem::exists(file)) {
     throw solver::InputError("--checkpoint " + file,
@@ -149,8 +144,8 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
                              "left out with --checkpoint: rounding_seed cannot be resumed, its random stream "
                              "restarts");
   }
-  const Checkpoint checkpoint(request.checkpoint.file, prepare_run({.scene = request.source.file,
-                                                                    .overrides = request.source.overrides}));
+  const Checkpoint checkpoint(request.checkpoint.file,
+                              prepare_run({.scene = request.source.file, .overrides = request.source.overrides}));
   PacedCheckpoint paced(checkpoint);
   const auto resumed = finished_steps(checkpoint, request);
   SolveSceneOptions options = grid_options(request, resumed ? resumed->state->finished : 0);
@@ -198,8 +193,7 @@ SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json
   if (request.stresses.fatigue.any()) keep_last_cycle(options, request.scene.cycles, cycle);
   SolvedScene solved = request.checkpoint.file.empty() ? solve_or_keep_steps(request.scene, options, result)
                                                        : solve_with_checkpoint(request, result);
-  if (request.continuum)
-    solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
+  if (request.continuum) solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
   write_solved(request, solved, cycle, text, result);
   return std::move(solved.record);
 }
@@ -220,13 +214,13 @@ SolveRecord answer_exactly(const SolveRequest& request, std::ostream& text, Json
 /// Solves on meshes and to tolerances that reach the target.
 int solve_to_target(const SolveRequest& request, std::ostream& text, Json& result) {
   const auto cache = std::make_shared<solver::SolveCache>();
-  const AccurateAnswer found = solve_to_accuracy(request.scene, *request.target,
-                                                 [&](const solver::Scene& chosen, solver::Detail detail) {
-                                                   SolveSceneOptions options = grid_options(request);
-                                                   options.cache = cache;
-                                                   options.detail = detail;
-                                                   return solve_or_keep_steps(chosen, options, result);
-                                                 });
+  const AccurateAnswer found =
+      solve_to_accuracy(request.scene, *request.target, [&](const solver::Scene& chosen, solver::Detail detail) {
+        SolveSceneOptions options = grid_options(request);
+        options.cache = cache;
+        options.detail = detail;
+        return solve_or_keep_steps(chosen, options, result);
+      });
   result = to_json(found.answer.record);
   result["accuracy"] = to_json(found.accuracy);
   write_answer(request, found.answer, text, result);
@@ -236,10 +230,9 @@ int solve_to_target(const SolveRequest& request, std::ostream& text, Json& resul
 
 /// Solves on meshes until the interval of the continuous problem is narrow enough.
 int solve_to_interval(SolveRequest request, std::ostream& text, Json& result) {
-  const ProvenAnswer found =
-      solve_until_proven(request.scene, *request.proven, [&](const solver::Scene& chosen) {
-        return solve_or_keep_steps(chosen, grid_options(request), result);
-      });
+  const ProvenAnswer found = solve_until_proven(request.scene, *request.proven, [&](const solver::Scene& chosen) {
+    return solve_or_keep_steps(chosen, grid_options(request), result);
+  });
   request.scene = found.scene;
   write_solved(request, found.solved, {}, text, result);
   result["proven"] = found.account;
@@ -261,8 +254,7 @@ int run_request(const SolveRequest& request, std::ostream& text, Json& result) {
                                     : plan_solve(request.scene, request.planned_ranks);
     if (!request.stresses.file.empty()) {
       plan.stresses = plan_stresses(request.stresses, request.scene);
-      for (double* const bytes : {&plan.bytes, &plan.least_bytes})
-        *bytes = std::max(plan.stresses->bytes, *bytes);
+      for (double* const bytes : {&plan.bytes, &plan.least_bytes}) *bytes = std::max(plan.stresses->bytes, *bytes);
     }
     result["plan"] = to_json(plan);
     text << plan_text(plan);
@@ -273,8 +265,7 @@ int run_request(const SolveRequest& request, std::ostream& text, Json& result) {
   if (request.proven) return solve_to_interval(request, text, result);
   std::optional<Accuracy> accuracy;
   if (request.target) accuracy = exact_accuracy(request.scene, *request.target);
-  const SolveRecord record =
-      exact ? answer_exactly(request, text, result) : answer_on_grid(request, text, result);
+  const SolveRecord record = exact ? answer_exactly(request, text, result) : answer_on_grid(request, text, result);
   if (accuracy) {
     result["accuracy"] = to_json(*accuracy);
     text << accuracy_text(*accuracy);

@@ -39,10 +39,9 @@ struct CheckpointFile {
 /// A scene, and how to solve it: exactly where its model is the exact one, else on a grid.
 struct SolveRequest {
   SceneFile source;
-  solver::Scene scene;  ///< read from the source
-  std::optional<AccuracyTarget> target =
-      {};             ///< cells and tolerance are chosen for it; none: the scene has them
-  bool plan = false;  ///< only predicts memory and time, of one of planned_ranks
+  solver::Scene scene;                        ///< read from the source
+  std::optional<AccuracyTarget> target = {};  ///< cells and tolerance are chosen for it; none: the scene has them
+  bool plan = false;                          ///< only predicts memory and time, of one of planned_ranks
   int planned_ranks = 1;
   bool continuum = false;                      ///< the certificate gets the gap of the continuous problem
   std::optional<double> proven = {};           ///< cells are chosen for an interval of this relative width

@@ -32,11 +32,9 @@ double no_error(const ErrorsRecord&) { return NAN; }
 const std::array<OutputNumber, 10> kOutputs{
     {{"twist_angle", "twist", [](const EndRecord& end) -> double { return end.loads.twist_angle; },
       [](const ErrorsRecord& errors) -> double { return errors.twist; }},
-     {"displacement[0]", "displacement along x1",
-      [](const EndRecord& end) { return end.loads.displacement.values[0]; },
+     {"displacement[0]", "displacement along x1", [](const EndRecord& end) { return end.loads.displacement.values[0]; },
       [](const ErrorsRecord& errors) -> double { return errors.displacement; }},
-     {"displacement[1]", "displacement along x2",
-      [](const EndRecord& end) { return end.loads.displacement.values[1]; },
+     {"displacement[1]", "displacement along x2", [](const EndRecord& end) { return end.loads.displacement.values[1]; },
       [](const ErrorsRecord& errors) -> double { return errors.displacement; }},
      {"moment", "moment", [](const EndRecord& end) -> double { return end.loads.moment; },
       [](const ErrorsRecord& errors) -> double { return errors.moment; }},
@@ -44,11 +42,9 @@ const std::array<OutputNumber, 10> kOutputs{
       [](const ErrorsRecord& errors) -> double { return errors.moment_limit; }},
      {"stick_radius", "stick radius", [](const EndRecord& end) -> double { return end.contact.stick_radius; },
       [](const ErrorsRecord& errors) -> double { return errors.stick_radius; }},
-     {"contact_radius", "contact radius",
-      [](const EndRecord& end) -> double { return end.contact.contact_radius; },
+     {"contact_radius", "contact radius", [](const EndRecord& end) -> double { return end.contact.contact_radius; },
       [](const ErrorsRecord& errors) -> double { return errors.contact_radius; }},
-     {"peak_pressure", "peak pressure",
-      [](const EndRecord& end) -> double { return end.contact.peak_pressure; },
+     {"peak_pressure", "peak pressure", [](const EndRecord& end) -> double { return end.contact.peak_pressure; },
       [](const ErrorsRecord& errors) -> double { return errors.peak_pressure; }},
      {"approach", "approach", [](const EndRecord& end) -> double { return end.contact.approach; }, no_error},
      {"dissipated", "dissipated energy", [](const EndRecord& end) -> double { return end.energy.dissipated; },
@@ -77,8 +73,7 @@ constexpr double kLinear = 0.1;
 constexpr std::size_t kExactDraws = 16384;
 constexpr std::size_t kGridDraws = 1024;
 constexpr int kFewCells = 64;
-constexpr std::array<std::pair<const char*, double>, 3> kQuantiles{
-    {{"5 %", 0.05}, {"50 %", 0.5}, {"95 %", 0.95}}};
+constexpr std::array<std::pair<const char*, double>, 3> kQuantiles{{{"5 %", 0.05}, {"50 %", 0.5}, {"95 %", 0.95}}};
 constexpr double kNormalAt95 = 1.645;  ///< standard uncertainties from the median of a normal distribution
 /// Added in squares, a third of the larger changes the sum by 5 %.
 constexpr double kNegligible = 1.0 / 3;
@@ -96,8 +91,7 @@ struct Neighbours {
   SolveRecord at(const std::vector<double>& off) const {
     std::vector<std::string> changed = overrides;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      changed.push_back(
-          fmt::format("{}={:.16e}{}", inputs[i].key, inputs[i].value * (1 + off[i]), inputs[i].unit));
+      changed.push_back(fmt::format("{}={:.16e}{}", inputs[i].key, inputs[i].value * (1 + off[i]), inputs[i].unit));
     }
     try {
       const solver::Scene at = scene.read(changed);
@@ -124,8 +118,8 @@ struct Neighbours {
 /// scene's own cells if few do not converge. An uncertain modulus of one body makes materials dissimilar. The
 /// radial motion that the pressure then causes enters the torsion by its square, so the exact answer without
 /// that motion still has the right derivative.
-Neighbours neighbours(const SolveRecord& result, const std::vector<UncertainInput>& inputs,
-                      const SceneFile& scene, const SolveSceneOptions& options) {
+Neighbours neighbours(const SolveRecord& result, const std::vector<UncertainInput>& inputs, const SceneFile& scene,
+                      const SolveSceneOptions& options) {
   Neighbours made{.inputs = inputs, .scene = scene, .options = options};
   made.options.cache = std::make_shared<solver::SolveCache>();
   const ErrorsRecord& errors = result.end.errors;
@@ -135,8 +129,7 @@ Neighbours neighbours(const SolveRecord& result, const std::vector<UncertainInpu
   const auto [n1, n2] = result.problem.cells;
   const double size[] = {static_cast<double>(n1), static_cast<double>(n2)};
   const double larger = std::fmax(size[0], size[1]) / kFewCells;
-  if (larger > 1 &&
-      made.take({fmt::format("grid.cells=[{:.0f},{:.0f}]", size[0] / larger, size[1] / larger)})) {
+  if (larger > 1 && made.take({fmt::format("grid.cells=[{:.0f},{:.0f}]", size[0] / larger, size[1] / larger)})) {
     return made;
   }
   made.overrides.clear();
@@ -182,8 +175,7 @@ std::string verdict(double inputs, double numerical, bool exact) {
   if (!std::isfinite(numerical)) return "the error of mesh and steps is not known";
   const std::string size = "the error of mesh and steps is " + percent(numerical);
   if (numerical <= kNegligible * inputs) return size + ": refinement would not reduce the uncertainty";
-  if (inputs <= kNegligible * numerical)
-    return size + ": a finer mesh or shorter steps matter more than better inputs";
+  if (inputs <= kNegligible * numerical) return size + ": a finer mesh or shorter steps matter more than better inputs";
   return size + ": both matter";
 }
 
@@ -194,8 +186,7 @@ bool is_rounding(const EndRecord& end, std::string_view name, double value) {
   const double moment = std::abs(end.loads.moment) / end.loads.moment_limit;
   const double displacement = end.loads.displacement.length();
   if (name == "twist_angle") return twist <= kRoundingRatio * displacement;
-  if (name.starts_with("displacement"))
-    return std::abs(value) <= kRoundingRatio * std::fmax(displacement, twist);
+  if (name.starts_with("displacement")) return std::abs(value) <= kRoundingRatio * std::fmax(displacement, twist);
   return name.starts_with("moment") && !(moment > kRoundingRatio);
 }
 
@@ -210,8 +201,7 @@ bool is_linear(const std::vector<UncertainOutput>& outputs, const Neighbours& ne
       for (const UncertainOutput& output : outputs) {
         const double change = value_of(found, output.name) / value_of(near.centre, output.name) - 1;
         const double part = sign * output.parts[i].part;
-        if (output.relative > kVaries && !(std::abs(change - part) <= kLinear * output.relative))
-          return false;
+        if (output.relative > kVaries && !(std::abs(change - part) <= kLinear * output.relative)) return false;
       }
     }
   }
@@ -263,8 +253,7 @@ Draws draw(const Neighbours& near, std::vector<UncertainOutput>& outputs) {
     std::ranges::sort(values);
     for (const auto& [word, below] : kQuantiles) {
       if (values.empty()) continue;
-      output.quantiles.emplace_back(
-          word, gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), below));
+      output.quantiles.emplace_back(word, gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), below));
     }
   }
   draws.sliding = static_cast<double>(sliding) / static_cast<double>(draws.number);
@@ -284,14 +273,12 @@ std::string sentence(const std::vector<UncertainOutput>& outputs, const std::vec
   if (!output->quantiles.empty()) {
     const double spread = output->quantiles.back().second - output->quantiles.front().second;
     const double relative = spread / (2 * kNormalAt95 * std::abs(output->value));
-    return fmt::format("{}'s {} matters most for the {}; {}", input.key, percent(input.relative),
-                       output->words, verdict(relative, output->numerical, exact));
+    return fmt::format("{}'s {} matters most for the {}; {}", input.key, percent(input.relative), output->words,
+                       verdict(relative, output->numerical, exact));
   }
-  const std::string all =
-      inputs.size() == 1 ? "" : fmt::format(" (all inputs together {})", percent(output->relative));
-  return fmt::format("{}'s {} makes {} of the {}{}; {}", input.key, percent(input.relative),
-                     percent(size(*largest)), output->words, all,
-                     verdict(output->relative, output->numerical, exact));
+  const std::string all = inputs.size() == 1 ? "" : fmt::format(" (all inputs together {})", percent(output->relative));
+  return fmt::format("{}'s {} makes {} of the {}{}; {}", input.key, percent(input.relative), percent(size(*largest)),
+                     output->words, all, verdict(output->relative, output->numerical, exact));
 }
 
 std::string draws_text(const Draws& draws) {
@@ -325,8 +312,8 @@ Json output_json(const UncertainOutput& output, bool exact) {
 
 }  // namespace
 
-Uncertainty uncertainty_of(const SolveRecord& result, const std::vector<UncertainInput>& inputs,
-                           const SceneFile& scene, const SolveSceneOptions& options) {
+Uncertainty uncertainty_of(const SolveRecord& result, const std::vector<UncertainInput>& inputs, const SceneFile& scene,
+                           const SolveSceneOptions& options) {
   Uncertainty found{.exact = result.is_exact(), .inputs = inputs};
   const Neighbours near = neighbours(result, inputs, scene, options);
   std::vector<CentralDifference> differences;
@@ -337,10 +324,8 @@ Uncertainty uncertainty_of(const SolveRecord& result, const std::vector<Uncertai
   for (const OutputNumber& number : kOutputs) {
     const double value = number.value(result.end);
     if (std::isnan(value) || value == 0.0 || is_rounding(result.end, number.name, value)) continue;
-    UncertainOutput output{.name = number.name,
-                           .words = number.words,
-                           .value = value,
-                           .numerical = numerical_error(result.end, number)};
+    UncertainOutput output{
+        .name = number.name, .words = number.words, .value = value, .numerical = numerical_error(result.end, number)};
     double squares = 0;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const double slope = differences[i].slope(number.name, number.value(near.centre.end));
@@ -362,18 +347,13 @@ Json to_json(const Uncertainty& uncertainty) {
   Json inputs = Json::array();
   for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
     const UncertainInput& input = uncertainty.inputs[i];
-    inputs.push_back({{"key", input.key},
-                      {"value", input.value},
-                      {"relative", input.relative},
-                      {"step", uncertainty.steps[i]}});
+    inputs.push_back(
+        {{"key", input.key}, {"value", input.value}, {"relative", input.relative}, {"step", uncertainty.steps[i]}});
   }
   Json json{{"inputs", std::move(inputs)}};
   if (uncertainty.draws) {
     const Draws& draws = *uncertainty.draws;
-    Json drawn{{"number", draws.number},
-               {"exact", draws.exact},
-               {"sliding", draws.sliding},
-               {"failed", draws.failed}};
+    Json drawn{{"number", draws.number}, {"exact", draws.exact}, {"sliding", draws.sliding}, {"failed", draws.failed}};
     if (draws.failed > 0) drawn.emplace("failed_reason", draws.failed_reason);
     json.emplace("draws", std::move(drawn));
   }

@@ -52,19 +52,17 @@ struct Uncertainty {
 
 /// The uncertainty of a converged result of the scene.
 ///
-/// 1. Central differences over a relative step of 1e-5 of exact answers where the result knows one, whose
-/// error
+/// 1. Central differences over a relative step of 1e-5 of exact answers where the result knows one, whose error
 ///    is 1e-10; else over 2 % of solves on at most 64 cells a side, on which the mesh's scatter is small. A
 ///    step is quartered where a load passes the limit.
 /// 2. Sums the squares of the inputs' parts.
-/// 3. Draws all inputs where first order does not hold: if one input at one standard uncertainty moves an
-/// output
+/// 3. Draws all inputs where first order does not hold: if one input at one standard uncertainty moves an output
 ///    by another amount than its derivative predicts, by a tenth of the output's standard uncertainty, or if
 ///    there is no answer at three.
 ///
 /// Throws InputError where no step of an input has an answer.
-Uncertainty uncertainty_of(const SolveRecord& result, const std::vector<UncertainInput>& inputs,
-                           const SceneFile& scene, const SolveSceneOptions& options);
+Uncertainty uncertainty_of(const SolveRecord& result, const std::vector<UncertainInput>& inputs, const SceneFile& scene,
+                           const SolveSceneOptions& options);
 
 Json to_json(const Uncertainty& uncertainty);
 

@@ -38,16 +38,14 @@ double depth_of(const std::string& word, const solver::Scene& scene) {
     depth = solver::parse_number(std::string_view(word).substr(0, word.size() - 1), 0);
     const solver::Model model = solver::make_model(scene);
     if (depth && !model.hertz)
-      throw InputError("--depths " + word,
-                       "allowed: lengths; the contact's radius is not known before the solve");
+      throw InputError("--depths " + word, "allowed: lengths; the contact's radius is not known before the solve");
     if (depth) *depth *= std::sqrt(model.hertz->semi_axis_1 * model.hertz->semi_axis_2) * model.length_unit;
   }
   if (!depth) depth = solver::Units().read(word, "m");
   if (!depth || !(*depth > 0.0) || !std::isfinite(*depth))
-    throw InputError(
-        "--depths " + word,
-        "allowed: depths above zero in m, with a unit, as \"20 um\", or over a Hertzian contact's "
-        "radius, as 0.4a; FROM..TO:N for N depths whose ratios are equal");
+    throw InputError("--depths " + word,
+                     "allowed: depths above zero in m, with a unit, as \"20 um\", or over a Hertzian contact's "
+                     "radius, as 0.4a; FROM..TO:N for N depths whose ratios are equal");
   return *depth;
 }
 
@@ -91,14 +89,11 @@ void StressFiles::read_depths(const solver::Scene& scene) {
   if (is_volume()) {
     std::vector<double> ascending = depths;
     std::ranges::sort(ascending);
-    if (std::ranges::adjacent_find(ascending) != ascending.end() ||
-        file.find(kDepthNumber) != std::string::npos)
-      throw InputError("--stresses " + file,
-                       "allowed: a volume without {depth} in its name, and each depth once");
+    if (std::ranges::adjacent_find(ascending) != ascending.end() || file.find(kDepthNumber) != std::string::npos)
+      throw InputError("--stresses " + file, "allowed: a volume without {depth} in its name, and each depth once");
   } else if (depths.size() > 1 && file.find(kDepthNumber) == std::string::npos) {
-    throw InputError(
-        "--stresses " + file,
-        "allowed for several depths: a volume, as stress.vtr, or a name with {depth}: a file a depth");
+    throw InputError("--stresses " + file,
+                     "allowed for several depths: a volume, as stress.vtr, or a name with {depth}: a file a depth");
   }
   if (!solver::is_bare(scene)) {
     throw InputError(scene.source.string(),
@@ -109,8 +104,7 @@ void StressFiles::read_depths(const solver::Scene& scene) {
                      "allowed: a scene with a history of loads: steps, or cycles");
   }
   if (scene.solver.model == solver::ModelChoice::exact)
-    throw InputError("--stresses " + file,
-                     "allowed: a solve on a grid; slipstick exact --at has exact stresses");
+    throw InputError("--stresses " + file, "allowed: a solve on a grid; slipstick exact --at has exact stresses");
 }
 
 namespace {
@@ -136,8 +130,7 @@ Json stresses_of(solver::Body body, const StressFiles& files, const solver::Scen
     std::vector<solver::Column> columns{{"x1", solver::cell_x1(grid)}, {"x2", solver::cell_x2(grid)}};
     if (std::filesystem::path(files.name(d, body)).extension() == ".csv")  // as check reads them
       columns.push_back({"x3", Eigen::ArrayXd::Constant(grid.cells(), files.depths[d])});
-    for (std::size_t a = 0; a < plane.stress.size(); ++a)
-      columns.push_back({kStressNames[a], plane.stress[a]});
+    for (std::size_t a = 0; a < plane.stress.size(); ++a) columns.push_back({kStressNames[a], plane.stress[a]});
     columns.push_back({kStressNames.back(), solver::von_mises(plane.stress)});
     solver::write_fields(files.name(d, body), grid, columns, Eigen::ArrayXd::Ones(grid.cells()));
   }
@@ -166,9 +159,8 @@ Json fatigue(solver::Body body, double poisson, const StressFiles& files,
   }
   Json json{{"states", cycle.size()}};
   if (const auto& [value, shear, mean, most] = largest.dang_van; asked.dang_van)
-    json["dang_van"] = {{"alpha", *asked.dang_van},  {"value", value},
-                        {"at", largest.dang_van_at}, {"shear", shear},
-                        {"hydrostatic_mean", mean},  {"hydrostatic_largest", most}};
+    json["dang_van"] = {{"alpha", *asked.dang_van}, {"value", value},           {"at", largest.dang_van_at},
+                        {"shear", shear},           {"hydrostatic_mean", mean}, {"hydrostatic_largest", most}};
   if (const auto& [value, shear, normal_stress, normal] = largest.findley; asked.findley)
     json["findley"] = {{"k", *asked.findley},
                        {"value", value},
@@ -200,15 +192,13 @@ Json write_stresses(const StressFiles& files, const solver::Scene& scene, const 
 std::string stresses_text(const Json& found) {
   const auto line = [](const char* label, const std::string& name, const Json& largest) {
     const auto metres = [&](std::size_t axis) { return number_text(largest["at"][axis].get<double>()); };
-    return text_line(
-        label, fmt::format("{} {} Pa at most, at x1 = {} m, x2 = {} m, depth {} m", name,
-                           number_text(largest["value"].get<double>()), metres(0), metres(1), metres(2)));
+    return text_line(label, fmt::format("{} {} Pa at most, at x1 = {} m, x2 = {} m, depth {} m", name,
+                                        number_text(largest["value"].get<double>()), metres(0), metres(1), metres(2)));
   };
-  std::string text = line("stresses", fmt::format("{} body: von Mises", found["body"].get<std::string>()),
-                          found["von_mises"]);
+  std::string text =
+      line("stresses", fmt::format("{} body: von Mises", found["body"].get<std::string>()), found["von_mises"]);
   if (found.contains("yield_ratio"))
-    text += text_line(
-        "", fmt::format("{} times the yield stress", number_text(found["yield_ratio"].get<double>())));
+    text += text_line("", fmt::format("{} times the yield stress", number_text(found["yield_ratio"].get<double>())));
   const Json none, &fatigue = found.contains("fatigue") ? found["fatigue"] : none;
   for (const auto& [key, name] : {std::pair("dang_van", "Dang Van"), {"findley", "Findley"}})
     if (fatigue.contains(key)) text += line("", name, fatigue[key]);

@@ -24,14 +24,13 @@ void print_coordinates(std::FILE* stream, const char* name, const Values& values
 void print_header(std::FILE* stream, const solver::Grid& grid, const std::vector<double>& ascending,
                   std::uint64_t bytes) {
   const std::string extent = fmt::format("0 {} 0 {} 0 {}", grid.n1 - 1, grid.n2 - 1, ascending.size() - 1);
-  fmt::print(
-      stream,
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"{}\" "
-      "header_type=\"UInt64\">\n<RectilinearGrid WholeExtent=\"{}\">\n<Piece Extent=\"{}\">\n<PointData>\n",
-      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", extent, extent);
+  fmt::print(stream,
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"{}\" "
+             "header_type=\"UInt64\">\n<RectilinearGrid WholeExtent=\"{}\">\n<Piece Extent=\"{}\">\n<PointData>\n",
+             std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", extent, extent);
   for (std::size_t a = 0; a < kStressNames.size(); ++a) {
-    fmt::print(stream, "<DataArray type=\"Float32\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-               kStressNames[a], a * (sizeof bytes + bytes));
+    fmt::print(stream, "<DataArray type=\"Float32\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", kStressNames[a],
+               a * (sizeof bytes + bytes));
   }
   std::vector<double> x1;
   std::vector<double> x2;
@@ -62,8 +61,7 @@ void write_stress_volume(std::FILE* stream, const std::string& file, const solve
   };
   for (std::size_t a = 0; a < kStressNames.size(); ++a) put(a * (sizeof bytes + bytes), &bytes, sizeof bytes);
   for (const double depth : depths) {
-    const auto number =
-        static_cast<std::uint64_t>(std::ranges::lower_bound(ascending, depth) - ascending.begin());
+    const auto number = static_cast<std::uint64_t>(std::ranges::lower_bound(ascending, depth) - ascending.begin());
     const solver::StressPlane at = plane(depth);
     for (std::size_t a = 0; a < kStressNames.size(); ++a) {
       const Eigen::ArrayXd stress = a < at.stress.size() ? at.stress[a] : solver::von_mises(at.stress);

@@ -57,16 +57,13 @@ std::vector<std::string> read_quantities(SceneReader& reader) {
 }
 
 void require_finite(const std::filesystem::path& file, const Study& study) {
-  const auto at_least_one = [](std::size_t count) {
-    return static_cast<double>(std::max<std::size_t>(1, count));
-  };
+  const auto at_least_one = [](std::size_t count) { return static_cast<double>(std::max<std::size_t>(1, count)); };
   double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
   for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
   if (solves > kMaxSolves) {
-    throw solver::InputError(file.string(),
-                             fmt::format("has {:g} solves; allowed: at most {:g}, cells times "
-                                         "shifts times tolerances times the values of each [[vary]]",
-                                         solves, kMaxSolves));
+    throw solver::InputError(file.string(), fmt::format("has {:g} solves; allowed: at most {:g}, cells times "
+                                                        "shifts times tolerances times the values of each [[vary]]",
+                                                        solves, kMaxSolves));
   }
 }
 
@@ -83,10 +80,8 @@ const solver::SettingKeys& study_keys() {
       {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), whole(1.0, kMaxShifts),
        "Grids of each mesh, with other positions of the cells under the edges: they give a mean and a "
        "spread."},
-      {"tolerances", KeyType::numbers, "", "the scene's own", kPositive,
-       "Tolerances to which each mesh is solved."},
-      {"vary", KeyType::tables, "", "none", kAny,
-       "Tables `[[vary]]`: every combination is a series of its own."},
+      {"tolerances", KeyType::numbers, "", "the scene's own", kPositive, "Tolerances to which each mesh is solved."},
+      {"vary", KeyType::tables, "", "none", kAny, "Tables `[[vary]]`: every combination is a series of its own."},
       {"vary.key", KeyType::text, "", kRequired, kAny,
        "The key of the scene that varies, except grid.cells and solver.tolerance."},
       {"vary.values", KeyType::values, "", kRequired, kAny, "The values of the key."},
@@ -113,8 +108,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
   study.quantities = read_quantities(reader);
   reader.reject_unknown();
   if (study.cells.size() < 2 && study.tolerances.size() < 2 && study.variations.empty()) {
-    throw solver::InputError(file.string(),
-                             "nothing varies; allowed: several cells, several tolerances, or [[vary]]");
+    throw solver::InputError(file.string(), "nothing varies; allowed: several cells, several tolerances, or [[vary]]");
   }
   require_finite(file, study);
   return study;

@@ -23,8 +23,8 @@ struct Study {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< "key=value"
   std::vector<solver::Index> cells;    ///< along the longer side, rising; empty: the scene's own grid
-  int shifts = 1;                  ///< grids of each mesh, with other positions of the cells under the edges
-  std::vector<double> tolerances;  ///< falling; empty: the scene's own
+  int shifts = 1;                      ///< grids of each mesh, with other positions of the cells under the edges
+  std::vector<double> tolerances;      ///< falling; empty: the scene's own
   std::vector<Variation> variations;
   std::vector<std::string> quantities;  ///< paths into a result; empty: all that have an expected order
 };

@@ -44,8 +44,7 @@ int run_study_of(const CLI::App& command, const StudyRequest& request, std::ostr
   return found.failed_runs.count() == 0 && all_converged(found) ? 0 : 1;
 }
 
-int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
-                      Json& result) {
+int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text, Json& result) {
   try {
     return run_study_of(command, request, text, result);
   } catch (const solver::InputError& error) {
@@ -59,8 +58,8 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
 
 RunCommand add_study_command(CLI::App& app) {
   const auto request = std::make_shared<StudyRequest>();
-  CLI::App* const command = app.add_subcommand(
-      "study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
+  CLI::App* const command =
+      app.add_subcommand("study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
   command->add_option("study", request->study, "study file (TOML)")->required();
   add_set_option(*command, request->runs.overrides, "override a key of the scene, for all series");
   command->add_option("--figure", request->figure, "draw errors, orders and budget: .svg, .pdf or .png");

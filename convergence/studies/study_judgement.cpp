@@ -65,8 +65,7 @@ Curve make_curve(const Series& series, const std::vector<MeshResults>& results, 
   Curve curve{quantity, exact, {}, {}};
   for (std::size_t i = 0; i < results.size(); ++i) {
     curve.samples.push_back(sample_of(series.meshes[i], results[i].grids, quantity));
-    curve.budgets.push_back(
-        split_error(quantity, results[i].grids.front(), results[i].tightened, results[i].rounded));
+    curve.budgets.push_back(split_error(quantity, results[i].grids.front(), results[i].tightened, results[i].rounded));
   }
   const double rounding = rounding_of(curve.budgets, series.meshes);
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -132,8 +131,7 @@ bool is_aligned(const solver::Scene& scene, const std::vector<MeshResults>& resu
   if (scene.contact.pressure != solver::PressureModel::solved) return false;
   return std::ranges::all_of(results, [](const MeshResults& at) {
     return std::ranges::all_of(at.grids, [](const Json& result) {
-      return number_at(result, "stick_cells") ==
-             number_at(result, "cells[0]") * number_at(result, "cells[1]");
+      return number_at(result, "stick_cells") == number_at(result, "cells[0]") * number_at(result, "cells[1]");
     });
   });
 }
@@ -145,8 +143,7 @@ Limit find_limit(Curve& curve, const ExpectedOrder& expected, bool aligned) {
                           : least_squares_limit(curve.samples, expected.value);
   const double scale = std::abs(limit.value);
   for (MeshSample& sample : curve.samples) {
-    sample = {sample.size, sample.value / limit.value - 1.0, sample.spread / scale, sample.grids,
-              sample.noise / scale};
+    sample = {sample.size, sample.value / limit.value - 1.0, sample.spread / scale, sample.grids, sample.noise / scale};
   }
   for (Budget& budget : curve.budgets) {
     budget = {budget.observed / limit.value - 1.0, budget.discretisation / limit.value - 1.0,
@@ -168,27 +165,22 @@ bool iteration_shows(const Curve& curve, const Series& series) {
   return false;
 }
 
-const std::string& first_of(const std::string& one, const std::string& other) {
-  return one.empty() ? other : one;
-}
+const std::string& first_of(const std::string& one, const std::string& other) { return one.empty() ? other : one; }
 
-/// Why a part of a mesh's budget is missing: the reason of the first run without a result; empty: nothing is
-/// missing.
+/// Why a part of a mesh's budget is missing: the reason of the first run without a result; empty: nothing is missing.
 std::string missing_part(const Series& series, const std::vector<MeshResults>& results, std::size_t mesh,
                          const std::string& quantity) {
-  std::string missing = first_of(why_missing(results[mesh].grids.front(), quantity),
-                                 why_missing(results[mesh].tightened, quantity));
+  std::string missing =
+      first_of(why_missing(results[mesh].grids.front(), quantity), why_missing(results[mesh].tightened, quantity));
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!series.meshes[i].rounded) continue;
     missing = first_of(missing, why_missing(results[i].tightened, quantity));
-    for (const Json& rounded : results[i].rounded)
-      missing = first_of(missing, why_missing(rounded, quantity));
+    for (const Json& rounded : results[i].rounded) missing = first_of(missing, why_missing(rounded, quantity));
   }
   return missing;
 }
 
-BudgetLine budget_line(const Curve& curve, const Order& order, std::size_t mesh, double h,
-                       const std::string& missing) {
+BudgetLine budget_line(const Curve& curve, const Order& order, std::size_t mesh, double h, const std::string& missing) {
   const Budget& budget = curve.budgets[mesh];
   const std::string& none = first_of(missing, order.why);
   const std::string unfitted = "no order was fitted";
@@ -265,8 +257,8 @@ QuantityResult judge_quantity(const Chosen& chosen, const solver::Scene& scene, 
     const Limit limit = find_limit(curve, judged.expected, is_aligned(scene, results));
     judged.order = limit.order;
     judged.order.constant /= limit.value;  // of the curve, which find_limit() has made relative
-    judged.extrapolated = {number_or(limit.value, limit.order.why),
-                           number_or(limit.uncertainty, limit.order.why), limit.method};
+    judged.extrapolated = {number_or(limit.value, limit.order.why), number_or(limit.uncertainty, limit.order.why),
+                           limit.method};
   }
   if (!failures.empty()) judged.order.why += "; " + failures;
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -318,9 +310,8 @@ std::string largest_part(const Budget& budget) {
                                                   {std::abs(budget.iteration), "iteration"},
                                                   {budget.rounding, "rounding"},
                                                   {budget.reference, "reference"}};
-  return std::max_element(
-             std::begin(parts), std::end(parts),
-             [](const auto& a, const auto& b) { return a.first < b.first || std::isnan(a.first); })
+  return std::max_element(std::begin(parts), std::end(parts),
+                          [](const auto& a, const auto& b) { return a.first < b.first || std::isnan(a.first); })
       ->second;
 }
 
@@ -328,23 +319,22 @@ SeriesResult judge_series(const Study& study, const Series& series, const std::v
   const Json& sample = sample_result(results);
   const solver::Scene scene = solver::read_scene(study.scene, series.overrides);
   const std::vector<Chosen> quantities = choose_quantities(study, sample);
-  SeriesResult judged{.name = series.name,
-                      .set = series.set,
-                      .tolerance = series.tolerance,
-                      .tightened = series.tightenings,
-                      .reference_uncertainty = number_or(
-                          number_at(sample, "exact.relative_uncertainty"),
-                          is_failed(sample) ? sample.value("message", "") : "there is no exact answer"),
-                      .failed_runs = failed_runs(results)};
+  SeriesResult judged{
+      .name = series.name,
+      .set = series.set,
+      .tolerance = series.tolerance,
+      .tightened = series.tightenings,
+      .reference_uncertainty = number_or(number_at(sample, "exact.relative_uncertainty"),
+                                         is_failed(sample) ? sample.value("message", "") : "there is no exact answer"),
+      .failed_runs = failed_runs(results)};
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Mesh& mesh = series.meshes[i];
     for (std::size_t k = 0; k < results[i].grids.size(); ++k)
       judged.rows.push_back(make_row(results[i].grids[k], mesh.grids[k], series.tolerance, k, quantities));
-    judged.meshes.push_back(
-        {.cells = mesh.grids.front().cells,
-         .h = mean_size(mesh),
-         .grids = mesh.grids.size(),
-         .seconds = number_or(median_seconds(results[i].grids), "no grid of it was solved")});
+    judged.meshes.push_back({.cells = mesh.grids.front().cells,
+                             .h = mean_size(mesh),
+                             .grids = mesh.grids.size(),
+                             .seconds = number_or(median_seconds(results[i].grids), "no grid of it was solved")});
   }
   const std::string failures = judged.failed_runs.text();
   for (const Chosen& chosen : quantities)
@@ -373,8 +363,8 @@ std::vector<StudyRow> tolerance_rows(const Study& study, const Series& series,
     const Json& tightest_run = by_mesh[i].back();
     for (std::size_t k = 0; k < study.tolerances.size(); ++k) {
       const Json& result = by_mesh[i][k];
-      StudyRow& row = rows.emplace_back(
-          make_row(result, series.meshes[i].grids.front(), study.tolerances[k], 0, quantities));
+      StudyRow& row =
+          rows.emplace_back(make_row(result, series.meshes[i].grids.front(), study.tolerances[k], 0, quantities));
       for (const auto& [path, exact] : quantities) {
         const double tightest = number_at(tightest_run, path);
         const double scale = exact ? 1.0 : std::abs(tightest);

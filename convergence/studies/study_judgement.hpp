@@ -61,9 +61,8 @@ SeriesResult judge_series(const Study& study, const Series& series, const std::v
 /// Whether the iteration error would spoil a fitted order.
 bool needs_tightening(const Study& study, const Series& series, const std::vector<MeshResults>& results);
 
-/// A row for each mesh and each tolerance of the study, with the error by stopping there. by_mesh: the
-/// results to these tolerances, then the result to the tightest tolerance, which stands in for the converged
-/// one.
+/// A row for each mesh and each tolerance of the study, with the error by stopping there. by_mesh: the results to these
+/// tolerances, then the result to the tightest tolerance, which stands in for the converged one.
 std::vector<StudyRow> tolerance_rows(const Study& study, const Series& series,
                                      const std::vector<std::vector<Json>>& by_mesh,
                                      const std::vector<MeshResults>& results);

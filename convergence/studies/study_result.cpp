@@ -12,11 +12,8 @@ namespace slipstick::convergence {
 namespace {
 
 Json to_json(const StudyRow& row) {
-  Json json{{"cells", row.cells},
-            {"h", row.h},
-            {"shift", row.shift},
-            {"requested", row.requested},
-            {"status", row.status}};
+  Json json{
+      {"cells", row.cells}, {"h", row.h}, {"shift", row.shift}, {"requested", row.requested}, {"status", row.status}};
   if (row.message) json.emplace("message", *row.message);
   for (const auto& [path, number] : row.numbers) set_number(json, path, number);
   set_number(json, "seconds", row.seconds);
@@ -80,13 +77,9 @@ Json to_json(const BudgetLine& line, const std::string& quantity, const MeshRow&
   return json;
 }
 
-bool has_exact(const SeriesResult& series) {
-  return std::ranges::any_of(series.quantities, &QuantityResult::exact);
-}
+bool has_exact(const SeriesResult& series) { return std::ranges::any_of(series.quantities, &QuantityResult::exact); }
 
-bool has_limits(const SeriesResult& series) {
-  return !std::ranges::all_of(series.quantities, &QuantityResult::exact);
-}
+bool has_limits(const SeriesResult& series) { return !std::ranges::all_of(series.quantities, &QuantityResult::exact); }
 
 /// The number at a path of a row.
 Number number_of(const PathNumbers& numbers, const std::string& path) {
@@ -103,9 +96,7 @@ std::string label(const std::string& path) {
 std::string error(double value) { return number_text(value, "{:+.1e}"); }
 std::string size(double value) { return number_text(std::abs(value), "{:.1e}"); }
 
-std::string cells_text(const std::array<solver::Index, 2>& cells) {
-  return fmt::format("{} x {}", cells[0], cells[1]);
-}
+std::string cells_text(const std::array<solver::Index, 2>& cells) { return fmt::format("{} x {}", cells[0], cells[1]); }
 
 std::string order_text(const Order& order) {
   if (!std::isfinite(order.value)) return "-";
@@ -120,10 +111,9 @@ std::string orders_text(const SeriesResult& series) {
   std::string text = fmt::format("  {:<27} {:>9} {:>9}  {:<20} {:>8}  {}\n", "", cells_text(first.cells),
                                  cells_text(last.cells), "order [95 %]", "expected", "verdict");
   for (const QuantityResult& each : series.quantities) {
-    text +=
-        fmt::format("  {:<27} {:>9} {:>9}  {:<20} {:>8}  {}\n", label(each.path),
-                    error(each.meshes.front().mean), error(each.meshes.back().mean), order_text(each.order),
-                    number_text(each.expected.value, "{:.1f}"), to_string(each.order.verdict));
+    text += fmt::format("  {:<27} {:>9} {:>9}  {:<20} {:>8}  {}\n", label(each.path), error(each.meshes.front().mean),
+                        error(each.meshes.back().mean), order_text(each.order),
+                        number_text(each.expected.value, "{:.1f}"), to_string(each.order.verdict));
   }
   text += fmt::format("  {:<27} {:>9} {:>9}  of one solve\n", "seconds", short_text(first.seconds),
                       short_text(last.seconds));
@@ -157,9 +147,8 @@ std::string budget_text(const SeriesResult& series) {
   if (series.quantities.empty()) return "";
   const QuantityResult& quantity = series.quantities.front();
   std::string text = fmt::format("  error budget: {}\n", label(quantity.path));
-  text +=
-      fmt::format("  {:>13} {:>10} = {:>14} + {:>9}   +-{:>9} +-{:>10}   (the fitted trend {})\n", "cells",
-                  "observed", "discretisation", "iteration", "rounding", "reference", "and the staircase");
+  text += fmt::format("  {:>13} {:>10} = {:>14} + {:>9}   +-{:>9} +-{:>10}   (the fitted trend {})\n", "cells",
+                      "observed", "discretisation", "iteration", "rounding", "reference", "and the staircase");
   for (std::size_t i = 0; i < quantity.budget.size(); ++i) {
     const BudgetLine& line = quantity.budget[i];
     text += fmt::format("  {:>13} {:>10} = {:>14} + {:>9}   {:>11} {:>12}   ({:>16} {:>17})\n",
@@ -180,17 +169,16 @@ std::string tolerances_text(const SeriesResult& series) {
   if (series.quantities.empty()) return "  no quantity of this scene can be followed\n";
   const auto& [path, is_error] = std::tie(series.quantities.front().path, series.quantities.front().exact);
   std::string text =
-      fmt::format("  {:>13} {:>9} {:>12} {:>10} {:>12} {:>9} {:>12}  {}\n", "cells", "requested",
-                  "gap/energy", "change", "applications", "seconds", label(path) + (is_error ? " error" : ""),
+      fmt::format("  {:>13} {:>9} {:>12} {:>10} {:>12} {:>9} {:>12}  {}\n", "cells", "requested", "gap/energy",
+                  "change", "applications", "seconds", label(path) + (is_error ? " error" : ""),
                   is_error ? "of it by stopping there" : "off the tightest run, relative");
   for (const StudyRow& row : *series.tolerances) {
     const Number value = number_of(row.numbers, path);
-    text += fmt::format("  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>9} {:>12}  {}{}\n", cells_text(row.cells),
-                        row.requested, size(number_of(row.numbers, "certificate.gap")),
-                        size(number_of(row.numbers, "change")),
-                        number_text(number_of(row.numbers, "operator_applications"), "{:.6g}"),
-                        short_text(row.seconds), is_error ? error(value) : short_text(value),
-                        error(number_of(row.iteration, path)), status_note(row.status));
+    text += fmt::format(
+        "  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>9} {:>12}  {}{}\n", cells_text(row.cells), row.requested,
+        size(number_of(row.numbers, "certificate.gap")), size(number_of(row.numbers, "change")),
+        number_text(number_of(row.numbers, "operator_applications"), "{:.6g}"), short_text(row.seconds),
+        is_error ? error(value) : short_text(value), error(number_of(row.iteration, path)), status_note(row.status));
   }
   return text;
 }
@@ -252,13 +240,12 @@ Json to_json(const StudyResult& result) {
 std::string study_text(const StudyResult& result) {
   std::string text = fmt::format("{}: {} series\n", result.name, result.series.size());
   if (const std::string failures = result.failed_runs.text(); !failures.empty()) {
-    text += fmt::format(
-        "{}; missing values are shown as \"-\", and the same command tries these runs again\n", failures);
+    text +=
+        fmt::format("{}; missing values are shown as \"-\", and the same command tries these runs again\n", failures);
   }
   for (const SeriesResult& series : result.series) {
-    text += fmt::format(
-        "\n{} ({}; tolerance {:g}{})\n", series.name, basis_text(series), series.tolerance,
-        series.tightened > 0 ? ", tightened by the study: the iteration error showed in an error" : "");
+    text += fmt::format("\n{} ({}; tolerance {:g}{})\n", series.name, basis_text(series), series.tolerance,
+                        series.tightened > 0 ? ", tightened by the study: the iteration error showed in an error" : "");
     if (series.tolerances) text += tolerances_text(series);
     if (series.meshes.size() > 1) {
       text += orders_text(series) + budget_text(series);

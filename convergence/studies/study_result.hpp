@@ -29,8 +29,7 @@ struct StudyRow {
   std::optional<std::string> message = {};
   PathNumbers numbers = {};
   Number seconds = {};
-  PathNumbers iteration =
-      {};  ///< error of each quantity by its tolerance; only in the rows of a tolerance study
+  PathNumbers iteration = {};  ///< error of each quantity by its tolerance; only in the rows of a tolerance study
 };
 
 /// One mesh. seconds: the median of its grids.
@@ -102,8 +101,7 @@ struct StudyResult {
   Json provenance = {};
 };
 
-/// Series are keyed by name, orders and limits by path: gates name series.NAME.order.PATH.value, low, high
-/// and verdict.
+/// Series are keyed by name, orders and limits by path: gates name series.NAME.order.PATH.value, low, high and verdict.
 Json to_json(const StudyResult& result);
 Json to_json(const SeriesResult& series);
 

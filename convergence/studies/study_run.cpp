@@ -22,8 +22,7 @@ using solver::Index;
 
 /// Rounding is measured on the finest mesh with at most this many cells a side, where it costs little.
 constexpr Index kRoundingCells = 128;
-/// Cells by which the grids of one mesh grow in all: the contact's edge then moves over the width of two
-/// cells.
+/// Cells by which the grids of one mesh grow in all: the contact's edge then moves over the width of two cells.
 constexpr double kShiftCells = 2.0;
 
 /// The grids of a mesh with `across` cells along its longer side, in the shape of the scene's own.
@@ -49,8 +48,7 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
     const double unit = growth * model.length_unit;
     GridChoice choice{own, {grid.n1, grid.n2}, unit * std::sqrt(grid.cell_area())};
     if (k > 0) {
-      choice.overrides.push_back(fmt::format("grid.extent=[{}, {}]",
-                                             unit * grid.h1 * static_cast<double>(grid.n1),
+      choice.overrides.push_back(fmt::format("grid.extent=[{}, {}]", unit * grid.h1 * static_cast<double>(grid.n1),
                                              unit * grid.h2 * static_cast<double>(grid.n2)));
     }
     mesh.grids.push_back(std::move(choice));
@@ -71,8 +69,7 @@ std::vector<RunSpec> series_runs(const Study& study, const Series& series) {
   std::vector<RunSpec> runs;
   for (const Mesh& mesh : series.meshes) {
     for (const GridChoice& grid : mesh.grids) runs.push_back(make_run(study, grid, series.tolerance));
-    const BudgetRuns parts =
-        budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
+    const BudgetRuns parts = budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
     runs.push_back(parts.tightened);
     if (mesh.rounded) runs.insert(runs.end(), parts.rounded.begin(), parts.rounded.end());
   }
@@ -102,16 +99,14 @@ bool varies_tolerance(const Study& study) { return study.tolerances.size() > 1; 
 std::vector<RunSpec> tolerance_runs(const Study& study, const Series& series) {
   std::vector<RunSpec> runs;
   for (const Mesh& mesh : series.meshes) {
-    for (const double tolerance : study.tolerances)
-      runs.push_back(make_run(study, mesh.grids.front(), tolerance));
+    for (const double tolerance : study.tolerances) runs.push_back(make_run(study, mesh.grids.front(), tolerance));
     runs.push_back(make_run(study, mesh.grids.front(), kTightening * study.tolerances.back()));
   }
   return runs;
 }
 
 /// The results of tolerance_runs() by mesh, taken from the front of `found`.
-std::vector<std::vector<Json>> take_tolerances(const Study& study, const Series& series,
-                                               std::span<const Json>& found) {
+std::vector<std::vector<Json>> take_tolerances(const Study& study, const Series& series, std::span<const Json>& found) {
   const std::size_t count = study.tolerances.size() + 1;
   std::vector<std::vector<Json>> by_mesh;
   for (std::size_t i = 0; i < series.meshes.size(); ++i) {
@@ -146,8 +141,7 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
     std::span<const Json> found(solved);
     for (const std::size_t i : open) results[i] = take_series(all[i], found);
     std::erase_if(open, [&](std::size_t i) {
-      return pass == kMaxTightenings || all[i].meshes.size() < 2 ||
-             !needs_tightening(study, all[i], results[i]);
+      return pass == kMaxTightenings || all[i].meshes.size() < 2 || !needs_tightening(study, all[i], results[i]);
     });
     for (const std::size_t i : open) {
       all[i].tolerance *= kTightening;
@@ -182,8 +176,7 @@ std::vector<Series> make_series(const Study& study, std::optional<double> memory
     scene.solver.memory_limit = memory_limit;
     if (series.name.empty()) series.name = scene.name;
     series.tolerance = study.tolerances.empty() ? scene.solver.tolerance : study.tolerances.back();
-    for (const Index across : study.cells)
-      series.meshes.push_back(make_mesh(study, scene, series.overrides, across));
+    for (const Index across : study.cells) series.meshes.push_back(make_mesh(study, scene, series.overrides, across));
     if (study.cells.empty()) series.meshes.push_back(make_mesh(study, scene, series.overrides, std::nullopt));
     Mesh* sample = &series.meshes.front();
     for (Mesh& mesh : series.meshes) {
@@ -197,8 +190,8 @@ std::vector<Series> make_series(const Study& study, std::optional<double> memory
 RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance) {
   RunSpec run{.scene = study.scene, .overrides = grid.overrides};
   run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-  run.stress_error = std::ranges::any_of(
-      study.quantities, [](const std::string& path) { return path.starts_with("stress_error"); });
+  run.stress_error =
+      std::ranges::any_of(study.quantities, [](const std::string& path) { return path.starts_with("stress_error"); });
   return run;
 }
 

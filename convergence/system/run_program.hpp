@@ -46,8 +46,7 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  /// Descriptor to poll: it is readable when there is more captured output, or its end. -1: nothing is
-  /// captured.
+  /// Descriptor to poll: it is readable when there is more captured output, or its end. -1: nothing is captured.
   int output() const { return output_; }
 
   /// Waits for more captured output. Returns whether that was all.

@@ -46,8 +46,7 @@ std::span<Value> array(Value* values, std::size_t count, const char* name) {
 
 /// results[i] = function(values[i]); an error names the index of the value.
 template <class Result, class Function>
-void for_each(std::span<const double> values, const char* name, std::span<Result> results,
-              const Function& function) {
+void for_each(std::span<const double> values, const char* name, std::span<Result> results, const Function& function) {
   std::size_t i = 0;
   try {
     for (; i < values.size(); ++i) results[i] = function(values[i]);
@@ -62,22 +61,19 @@ slipstick_state in_c(const TorsionState& state) {
 }
 
 slipstick_cycle_state in_c(const analytic::CycleState& state) {
-  return {state.moment_ratio,      state.moment,    state.twist, state.stick_ratio,
-          state.tangent_stiffness, state.dissipated};
+  return {state.moment_ratio, state.moment, state.twist, state.stick_ratio, state.tangent_stiffness, state.dissipated};
 }
 
 double pressure_at(const Profile& profile, double radius) {
-  if (!(radius >= 0 && radius <= 1))
-    throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", radius));
+  if (!(radius >= 0 && radius <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", radius));
   return profile.pressure(radius);
 }
 
 void find_quantity(const Profile& profile, StateAt state_at, std::span<const double> values, int wanted,
                    std::span<double> results) {
   if (wanted == SLIPSTICK_ENERGY_LOST) {
-    return for_each(values, "values", results, [&](double value) {
-      return analytic::energy_lost_per_cycle(state_at(value, profile), profile);
-    });
+    return for_each(values, "values", results,
+                    [&](double value) { return analytic::energy_lost_per_cycle(state_at(value, profile), profile); });
   }
   if (!(wanted >= 0 && wanted < static_cast<int>(kMembers.size())))
     throw std::invalid_argument(fmt::format("wanted = {}; allowed: 0 to {}", wanted, kMembers.size()));
@@ -91,13 +87,11 @@ struct StressedBody {
   double front;
 };
 
-StressedBody stressed_body(const Profile& profile, int given, std::span<const double> values,
-                           double friction) {
+StressedBody stressed_body(const Profile& profile, int given, std::span<const double> values, double friction) {
   if (!(friction >= 0 && std::isfinite(friction)))
     throw std::domain_error(fmt::format("friction = {}; allowed: 0 or more, finite", friction));
   if (values.size() != 1 && given != SLIPSTICK_MOMENT_RATIO)
-    throw std::invalid_argument(
-        fmt::format("{} values; allowed: 1, or a history of moment ratios", values.size()));
+    throw std::invalid_argument(fmt::format("{} values; allowed: 1, or a history of moment ratios", values.size()));
   if (values.size() == 1 && values[0] >= 0) {
     const TorsionState state = state_by(given)(values[0], profile);
     return {{state, profile}, state.stick_ratio};
@@ -112,8 +106,7 @@ slipstick_stress stress_at(const analytic::StressField& field, analytic::BodyPoi
   const analytic::PressureStress normal = field.by_pressure(at, poisson);
   const analytic::TorsionStress shear = field.by_torsion(at);
   const analytic::Severity both = analytic::severity(normal, shear, friction);
-  return {normal.rr, normal.tt,      normal.zz,   normal.rz,   shear.rt,
-          shear.tz,  both.von_mises, both.tresca, both.tension};
+  return {normal.rr, normal.tt, normal.zz, normal.rz, shear.rt, shear.tz, both.von_mises, both.tresca, both.tension};
 }
 
 /// Calls the work with the profile of this name. The profile of the last call is kept, since many calls in a
@@ -137,16 +130,13 @@ int with_profile(const char* name, const Work& work) noexcept {
 
 using namespace slipstick;
 
-int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted,
-                    double* results) {
+int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted, double* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
-    c::find_quantity(shape, c::state_by(given), c::array(values, n, "values"), wanted,
-                     c::array(results, n, "results"));
+    c::find_quantity(shape, c::state_by(given), c::array(values, n, "values"), wanted, c::array(results, n, "results"));
   });
 }
 
-int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
-                           slipstick_state* states) {
+int slipstick_exact_states(const char* profile, int given, size_t n, const double* values, slipstick_state* states) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const c::StateAt state_at = c::state_by(given);
     c::for_each(c::array(values, n, "values"), "values", c::array(states, n, "states"),
@@ -154,8 +144,8 @@ int slipstick_exact_states(const char* profile, int given, size_t n, const doubl
   });
 }
 
-int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values,
-                                double relative_error, double* results) {
+int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values, double relative_error,
+                                double* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const c::StateAt state_at = c::state_by(given);
     if (!(relative_error >= c::kLeastLossError && relative_error < 1.0)) {
@@ -191,8 +181,7 @@ int slipstick_exact_profile(const char* profile, slipstick_profile* result) {
   });
 }
 
-int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
-                            slipstick_cycle_state* states) {
+int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios, slipstick_cycle_state* states) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     analytic::LoadingHistory history(shape);
     c::for_each(c::array(moment_ratios, n, "moment_ratios"), "moment_ratios", c::array(states, n, "states"),
@@ -203,8 +192,8 @@ int slipstick_exact_history(const char* profile, size_t n, const double* moment_
   });
 }
 
-int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
-                          size_t points_per_branch, slipstick_cycle_state* states) {
+int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points, size_t points_per_branch,
+                          slipstick_cycle_state* states) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     c::require(states, "states");
     if (points_per_branch > static_cast<size_t>(std::numeric_limits<int>::max()))
@@ -216,20 +205,19 @@ int slipstick_exact_curve(const char* profile, size_t n, const double* turning_p
   });
 }
 
-int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
-                                     size_t n_radii, const double* radii, double* results) {
+int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios, size_t n_radii,
+                                     const double* radii, double* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     analytic::LoadingHistory history(shape);
-    for (const double moment_ratio : c::array(moment_ratios, n_moments, "moment_ratios"))
-      history.load_to(moment_ratio);
+    for (const double moment_ratio : c::array(moment_ratios, n_moments, "moment_ratios")) history.load_to(moment_ratio);
     c::for_each(c::array(radii, n_radii, "radii"), "radii", c::array(results, n_radii, "results"),
                 [&](double radius) { return history.traction(radius); });
   });
 }
 
-int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values,
-                             double friction, double poisson, size_t n, const double* radii,
-                             const double* depths, slipstick_stress* results) {
+int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values, double friction,
+                             double poisson, size_t n, const double* radii, const double* depths,
+                             slipstick_stress* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const analytic::StressField field =
         c::stressed_body(shape, given, c::array(values, n_values, "values"), friction).field;
@@ -241,8 +229,7 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
 }
 
 int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
-                                   double friction, double poisson, int measure,
-                                   slipstick_largest_stress* result) {
+                                   double friction, double poisson, int measure, slipstick_largest_stress* result) {
   using analytic::Severity;
   constexpr std::array kMeasures{&Severity::von_mises, &Severity::tresca, &Severity::tension};
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
@@ -250,8 +237,8 @@ int slipstick_exact_largest_stress(const char* profile, int given, size_t n_valu
     if (!(measure >= 0 && measure < static_cast<int>(kMeasures.size())))
       throw std::invalid_argument(fmt::format("measure = {}; allowed: 0, 1, 2", measure));
     const auto body = c::stressed_body(shape, given, c::array(values, n_values, "values"), friction);
-    const auto [value, at] = analytic::largest_stress(body.field, kMeasures.at(static_cast<size_t>(measure)),
-                                                      friction, poisson, body.front);
+    const auto [value, at] =
+        analytic::largest_stress(body.field, kMeasures.at(static_cast<size_t>(measure)), friction, poisson, body.front);
     *result = {value, at.radius, at.depth};
   });
 }
@@ -262,10 +249,10 @@ int slipstick_exact_indentation(const char* profile, double load, double effecti
     c::require(profile, "profile");
     c::require(result, "result");
     const auto lengths = c::array(shape, n_shape, "shape");
-    const analytic::Indentation found = analytic::press(profile, {.load = load,
-                                                                  .effective_modulus = effective_modulus,
-                                                                  .shape = {lengths.begin(), lengths.end()}})
-                                            .indentation;
+    const analytic::Indentation found =
+        analytic::press(
+            profile, {.load = load, .effective_modulus = effective_modulus, .shape = {lengths.begin(), lengths.end()}})
+            .indentation;
     *result = {found.contact_radius, found.approach, found.reference_pressure};
   });
 }

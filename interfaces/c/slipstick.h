@@ -53,8 +53,7 @@ enum slipstick_quantity {
 /* results[i]: the quantity `wanted` of the state of first loading at which the quantity `given` (0 to 4) is
  * values[i]. Both arrays have n numbers; they may be the same one. A value that is NaN or out of range
  * ends the call; the message gives its index, and results after it are unchanged. */
-int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted,
-                    double* results);
+int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted, double* results);
 
 /* All quantities except the energy. */
 typedef struct slipstick_state {
@@ -66,13 +65,12 @@ typedef struct slipstick_state {
   double moment;
   double tangent_stiffness;
 } slipstick_state;
-int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
-                           slipstick_state* states);
+int slipstick_exact_states(const char* profile, int given, size_t n, const double* values, slipstick_state* states);
 
 /* As slipstick_exact with SLIPSTICK_ENERGY_LOST, to a relative error from 1e-14 (its own) to below 1: a
  * larger one takes a tenth of the time for profiles without a closed form. */
-int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values,
-                                double relative_error, double* results);
+int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const double* values, double relative_error,
+                                double* results);
 
 /* results[i]: the traction q/(mu p0) around the axis at radius r/a = radii[i] in [0, 1], for the state at
  * which `given` is `value`. The edge of a flat punch, where it is infinite, is refused. */
@@ -102,17 +100,16 @@ typedef struct slipstick_cycle_state {
 
 /* states[i]: the state after the moments moment_ratios[0] to moment_ratios[i], each in (-1, 1), starting from
  * zero. */
-int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
-                            slipstick_cycle_state* states);
+int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios, slipstick_cycle_state* states);
 
 /* The curve through these turning points, from the unloaded state: n * points_per_branch + 1 states, which
  * are closer to each other near the ends of a branch. */
-int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
-                          size_t points_per_branch, slipstick_cycle_state* states);
+int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points, size_t points_per_branch,
+                          slipstick_cycle_state* states);
 
 /* results[i]: the signed traction q/(mu p0) at radii[i] after the n_moments moments. */
-int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
-                                     size_t n_radii, const double* radii, double* results);
+int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios, size_t n_radii,
+                                     const double* radii, double* results);
 
 /* Stresses below the surface, along r, theta and the outward normal z: tz is the traction q at the surface.
  * By the pressure over p0, by the torsion (rt, tz) over mu p0; the last three of both together, over p0. */
@@ -131,9 +128,9 @@ typedef struct slipstick_stress {
 /* results[i]: at r/a = radii[i], depth z/a = depths[i]. The state: `given` is values[0]; several values of
  * SLIPSTICK_MOMENT_RATIO are a history of moments. NaN for stresses by a pressure that the profile does not
  * know. */
-int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values,
-                             double friction, double poisson, size_t n, const double* radii,
-                             const double* depths, slipstick_stress* results);
+int slipstick_exact_stresses(const char* profile, int given, size_t n_values, const double* values, double friction,
+                             double poisson, size_t n, const double* radii, const double* depths,
+                             slipstick_stress* results);
 
 /* The largest stress in the body, over p0, and where it is. measure: 0 von Mises, 1 Tresca, 2 tension. Fails
  * where a stress is infinite or not known. */
@@ -143,8 +140,7 @@ typedef struct slipstick_largest_stress {
   double depth;  /* z/a */
 } slipstick_largest_stress;
 int slipstick_exact_largest_stress(const char* profile, int given, size_t n_values, const double* values,
-                                   double friction, double poisson, int measure,
-                                   slipstick_largest_stress* result);
+                                   double friction, double poisson, int measure, slipstick_largest_stress* result);
 
 /* The contact under a normal load, in SI units. shape: "hertz": sphere radius; "cone": slope;
  * "flat_punch": radius; "power:N": the gap's coefficient; "rounded_punch": flat radius, corner radius. */

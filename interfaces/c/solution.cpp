@@ -32,8 +32,7 @@ extern "C" void fftw_set_planner_hooks(void (*before)(), void (*after)());
 struct slipstick_solution {
   slipstick::solver::Grid grid{};
   std::vector<slipstick::solver::Column> columns;
-  std::vector<std::vector<slipstick::solver::Column>>
-      steps;  ///< columns of a history's steps; empty: not kept
+  std::vector<std::vector<slipstick::solver::Column>> steps;  ///< columns of a history's steps; empty: not kept
   Eigen::ArrayXd pressure;
   slipstick::convergence::Json result;
   std::string json;
@@ -115,8 +114,8 @@ Request request_of(const char* scene, const char* file, size_t n_overrides, cons
   if (scene == nullptr) require(file, "file (where scene = NULL)");
   if (n_overrides > 0) require(overrides, "overrides");
   Request request{};
-  request.settings = scene != nullptr ? solver::SettingsText{scene, file != nullptr ? file : "scene"}
-                                      : solver::settings_of(file);
+  request.settings =
+      scene != nullptr ? solver::SettingsText{scene, file != nullptr ? file : "scene"} : solver::settings_of(file);
   for (size_t i = 0; i < n_overrides; ++i) {
     require(overrides[i], "an override");
     request.overrides.emplace_back(overrides[i]);
@@ -125,8 +124,7 @@ Request request_of(const char* scene, const char* file, size_t n_overrides, cons
 }
 
 /// The columns of a solution, at most so many.
-Columns columns_of(const solver::Solution& solution, const convergence::OracleAnswer& exact,
-                   std::size_t most) {
+Columns columns_of(const solver::Solution& solution, const convergence::OracleAnswer& exact, std::size_t most) {
   Columns columns;
   const solver::Index cells = solution.grid.cells();
   std::vector<solver::FieldColumn> known = convergence::solution_columns(solution, exact);
@@ -151,11 +149,9 @@ convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request
     if (wanted && bytes <= kMostStepBytes) steps->push_back(columns_of(at, {}, kStepColumns));
   };
   const auto progress = [&](int iteration, double change) {
-    if (request.progress != nullptr && request.progress(iteration, change, request.user) != 0)
-      throw Stopped{};
+    if (request.progress != nullptr && request.progress(iteration, change, request.user) != 0) throw Stopped{};
   };
-  return convergence::solve_scene(
-      scene, {.progress = progress, .on_step = on_step, .cache = cache, .detail = detail});
+  return convergence::solve_scene(scene, {.progress = progress, .on_step = on_step, .cache = cache, .detail = detail});
 }
 
 void keep(slipstick_solution& kept, const convergence::SolvedScene& solved, const Scene& scene) {
@@ -194,10 +190,8 @@ std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, con
 /// Answers exactly where possible, unless the scene says otherwise. Returns as solve_as_it_stands().
 std::string solve_accurately(slipstick_solution& kept, Scene scene, const Request& request) {
   const convergence::AccuracyTarget target{.error = request.accuracy};
-  const bool said =
-      solver::SceneReader(request.settings, request.overrides, solver::scene_keys()).has("solver.model");
-  if (!said && convergence::answers_exactly(scene, target.of))
-    scene.solver.model = solver::ModelChoice::exact;
+  const bool said = solver::SceneReader(request.settings, request.overrides, solver::scene_keys()).has("solver.model");
+  if (!said && convergence::answers_exactly(scene, target.of)) scene.solver.model = solver::ModelChoice::exact;
   convergence::require_reachable(scene, target);
   if (scene.solver.model == solver::ModelChoice::exact) {
     const convergence::Accuracy account = convergence::exact_accuracy(scene, target);
@@ -207,10 +201,9 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
     return {};
   }
   const auto cache = std::make_shared<solver::SolveCache>();
-  const convergence::AccurateAnswer answer =
-      convergence::solve_to_accuracy(scene, target, [&](const Scene& chosen, solver::Detail detail) {
-        return find_on_grid(chosen, request, cache, detail);
-      });
+  const convergence::AccurateAnswer answer = convergence::solve_to_accuracy(
+      scene, target,
+      [&](const Scene& chosen, solver::Detail detail) { return find_on_grid(chosen, request, cache, detail); });
   keep(kept, answer.answer, scene);
   kept.result["accuracy"] = to_json(answer.accuracy);
   const std::string account = accuracy_text(answer.accuracy);
@@ -220,13 +213,11 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
 
 int solve(const Request& request, slipstick_solution& kept) {
   share_planner();
-  const Scene scene =
-      solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
+  const Scene scene = solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
   const PlannerLock lock(needs_exclusive(scene));
   const bool accurate = request.accuracy != 0;
   const PlansOfOneRounding plans{scene.solver.rounding_seed != 0};
-  const std::string why =
-      accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
+  const std::string why = accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
   // Names of files need not be UTF-8; JSON is.
   kept.json = kept.result.dump(2, ' ', false, Json::error_handler_t::replace);
   if (why.empty() && kept.result.at("status") == "converged") return SLIPSTICK_OK;
@@ -248,13 +239,13 @@ const Columns& columns_named(const slipstick_solution& solution, std::string_vie
     name = rest.substr(kOfStep.size());
     return solution.steps[step];
   }
-  throw std::invalid_argument(
-      fmt::format("field \"{}\"; allowed: {}", name,
-                  !solution.steps.empty() ? fmt::format("steps[0] to steps[{}]", solution.steps.size() - 1)
-                                          : "fields of the last step, since those of all steps are kept only "
-                                            "for histories on a grid, without "
-                                            "an accuracy, where they take at most 512 MiB; slipstick solve "
-                                            "--fields NAME{step}.csv writes them"));
+  throw std::invalid_argument(fmt::format("field \"{}\"; allowed: {}", name,
+                                          !solution.steps.empty()
+                                              ? fmt::format("steps[0] to steps[{}]", solution.steps.size() - 1)
+                                              : "fields of the last step, since those of all steps are kept only "
+                                                "for histories on a grid, without "
+                                                "an accuracy, where they take at most 512 MiB; slipstick solve "
+                                                "--fields NAME{step}.csv writes them"));
 }
 
 /// The number; if there is none, NaN and `why`.
@@ -354,8 +345,7 @@ int slipstick_solution_write(const slipstick_solution* solution, const char* fil
     c::require(solution, "solution");
     c::require(file, "file");
     solver::require_field_format(file);
-    if (solution->columns.empty())
-      throw std::invalid_argument("the solution has no fields; allowed: one with fields");
+    if (solution->columns.empty()) throw std::invalid_argument("the solution has no fields; allowed: one with fields");
     const c::PlannerLock lock(true);
     solver::write_fields(file, solution->grid, solution->columns, solution->pressure);
   });

@@ -94,8 +94,7 @@ void add_accuracy_options(CLI::App& command, LawRequest& request) {
       command.add_option("--element-error", request.element_error,
                          "over the limit, of the elements in parallel on first loading; 1e-5 to 0.5");
   error->capture_default_str();
-  command
-      .add_option("--elements", request.elements, "number of elements, 1 to 200, whose error is the least")
+  command.add_option("--elements", request.elements, "number of elements, 1 to 200, whose error is the least")
       ->excludes(error);
   command
       .add_option("--limit-loads", request.limit_loads,
@@ -108,16 +107,12 @@ void add_accuracy_options(CLI::App& command, LawRequest& request) {
 
 convergence::RunCommand add_law_command(CLI::App& app) {
   const auto request = std::make_shared<LawRequest>();
-  CLI::App* const command =
-      app.add_subcommand("law", "The contact law of torsion for other programs, with its error");
-  CLI::Option* const scene =
-      command->add_option("scene", request->scene,
-                          "scene file (TOML) with an exact answer: the law in SI units, at its first load");
+  CLI::App* const command = app.add_subcommand("law", "The contact law of torsion for other programs, with its error");
+  CLI::Option* const scene = command->add_option(
+      "scene", request->scene, "scene file (TOML) with an exact answer: the law in SI units, at its first load");
   add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.normal=500");
   command->get_option("--set")->needs(scene);
-  command
-      ->add_option("--profile", request->profile,
-                   "without a scene, dimensionless: " + analytic::profile_words())
+  command->add_option("--profile", request->profile, "without a scene, dimensionless: " + analytic::profile_words())
       ->excludes(scene)
       ->capture_default_str();
   command
@@ -127,10 +122,9 @@ convergence::RunCommand add_law_command(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--prefix", request->prefix,
-          "begins the names in .h, .table and .inp, so that one program can take several laws; a name "
-          "in C")
+      ->add_option("--prefix", request->prefix,
+                   "begins the names in .h, .table and .inp, so that one program can take several laws; a name "
+                   "in C")
       ->check(CLI::Validator(
           [](const std::string& word) {
             return std::regex_match(word, std::regex("[A-Za-z_][A-Za-z0-9_]*")) ? "" : "allowed: a name in C";

@@ -5,8 +5,7 @@
 
 namespace slipstick::solver {
 
-SolveCache::SolveCache(double max_bytes)
-    : max_bytes_(max_bytes), bound_(max_bytes), rounding_(std::fegetround()) {}
+SolveCache::SolveCache(double max_bytes) : max_bytes_(max_bytes), bound_(max_bytes), rounding_(std::fegetround()) {}
 
 void SolveCache::begin_solve(double room) {
   ++solve_;

@@ -46,8 +46,7 @@ struct CertificateSums {
 template <class Rotation>
 Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const TractionField& field,
                            const Eigen::ArrayXd& friction_bound, const Rotation& rotation, double moment,
-                           const std::array<double, 2>& force, double least_eigenvalue,
-                           const Inherited& before) {
+                           const std::array<double, 2>& force, double least_eigenvalue, const Inherited& before) {
   const Eigen::Index cells = friction_bound.size();
   const Eigen::ArrayXd& q = field.traction;
   const Eigen::ArrayXd& u = field.elastic_displacement;
@@ -89,8 +88,7 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
   if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * sums.friction;
   certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
   const double imbalance = std::abs(sums.moment - moment);
-  certificate.moment =
-      imbalance == 0.0 ? 0.0 : imbalance / sums.limit;  // one cell on the axis: the limit is 0 too
+  certificate.moment = imbalance == 0.0 ? 0.0 : imbalance / sums.limit;  // one cell on the axis: the limit is 0 too
   certificate.force = std::hypot(sums.force1 - force[0], sums.force2 - force[1]) / sums.friction;
   certificate.friction_bound = sums.worst - 1.0;
   return certificate;
@@ -98,16 +96,14 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
 
 }  // namespace
 
-Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force,
-                    double least_eigenvalue) {
-  return certificate_of(Sweep::whole(friction_bound.size()), FrictionDiscs(friction_bound), field,
-                        friction_bound, rotation, moment, force, least_eigenvalue, {});
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Eigen::ArrayXd& rotation,
+                    double moment, const std::array<double, 2>& force, double least_eigenvalue) {
+  return certificate_of(Sweep::whole(friction_bound.size()), FrictionDiscs(friction_bound), field, friction_bound,
+                        rotation, moment, force, least_eigenvalue, {});
 }
 
-Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
-                    double moment, const std::array<double, 2>& force, double least_eigenvalue,
-                    const Inherited& before) {
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid, double moment,
+                    const std::array<double, 2>& force, double least_eigenvalue, const Inherited& before) {
   return certificate_of(Sweep::whole(grid), FrictionDiscs(grid, friction_bound), field, friction_bound,
                         MotionField(grid, 0.0, 0.0, 1.0), moment, force, least_eigenvalue, before);
 }

@@ -29,10 +29,9 @@ struct Certificate {
   /// Coulomb's law holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the
   /// given moment, so that |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
-  /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in the remaining slip of stick
-  /// cells: the sum over cells of max over |q + d| <= mu p of -s.d - k|d|^2/2, with q.Kq >= k q.q. It never
-  /// exceeds the gap, and is free of the gap's rounding: at small loads the gap weights rounding errors of
-  /// the displacement by mu p.
+  /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in the remaining slip of stick cells: the
+  /// sum over cells of max over |q + d| <= mu p of -s.d - k|d|^2/2, with q.Kq >= k q.q. It never exceeds the gap, and
+  /// is free of the gap's rounding: at small loads the gap weights rounding errors of the displacement by mu p.
   double energy_error;
   /// Rounding error of the gap over q.Kq/2: a smaller gap cannot be distinguished from zero.
   double rounding;
@@ -50,15 +49,13 @@ struct Inherited {
   double motion = 0.0;  ///< largest |rigid displacement| of the step in the contact
 };
 
-/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: the imposed M/Delta
-/// and F/Delta. least_eigenvalue: a lower bound for the operator (elastic_law.hpp); with 0 the energy error
-/// is the gap.
-Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {},
-                    double least_eigenvalue = 0.0);
+/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: the imposed M/Delta and
+/// F/Delta. least_eigenvalue: a lower bound for the operator (elastic_law.hpp); with 0 the energy error is the gap.
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Eigen::ArrayXd& rotation,
+                    double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0);
 /// The same about a grid's origin.
-Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
-                    double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0,
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid, double moment,
+                    const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0,
                     const Inherited& before = {});
 
 /// Upper bounds of the members of a certificate. Infinite: anything but NaN.

@@ -22,17 +22,14 @@ constexpr std::array<Parity, 2> kTorsionParities{{{1, -1}, {-1, 1}}};
 /// By the motions (1, 0), (0, 1) and (-x2, x1); empty: not imposed, or not given.
 using PerMotion = std::array<std::optional<double>, 3>;
 
-PerMotion per_motion(const std::optional<std::array<double, 2>>& translations,
-                     const std::optional<double>& rotation) {
+PerMotion per_motion(const std::optional<std::array<double, 2>>& translations, const std::optional<double>& rotation) {
   if (!translations) return {std::nullopt, std::nullopt, rotation};
   return {(*translations)[0], (*translations)[1], rotation};
 }
 
 /// The loads along the motions to be found, and the given motions.
 PerMotion loads_of(const TangentialProblem& problem) { return per_motion(problem.force, problem.moment); }
-PerMotion given_of(const TangentialProblem& problem) {
-  return per_motion(problem.displacement, problem.twist);
-}
+PerMotion given_of(const TangentialProblem& problem) { return per_motion(problem.displacement, problem.twist); }
 
 /// The tangential problem on one grid: a NestedProblem.
 class TangentialOnGrid {
@@ -120,16 +117,15 @@ class TangentialOnGrid {
 };
 
 /// Sets the solution's motions: found, given, or 0 if not modelled.
-void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
-                     const TangentialProblem& problem) {
+void describe_motion(TangentialSolution& solution, const NewtonSummary& newton, const TangentialProblem& problem) {
   const PerMotion loads = loads_of(problem), given = given_of(problem);
   std::array<double, 3> motion{};
   Index found = 0;
   for (std::size_t k = 0; k < motion.size(); ++k) {
     if (given[k]) motion[k] = *given[k];
     if (!loads[k]) continue;
-    motion[k] = found < newton.multipliers.size() ? newton.multipliers[found]
-                                                  : std::numeric_limits<double>::quiet_NaN();
+    motion[k] =
+        found < newton.multipliers.size() ? newton.multipliers[found] : std::numeric_limits<double>::quiet_NaN();
     ++found;
   }
   solution.displacement = {motion[0], motion[1]};
@@ -148,9 +144,8 @@ bool is_at_rest(const TangentialProblem& problem) {
   const auto nothing = [](const std::optional<std::array<double, 2>>& pair) {
     return !pair || *pair == std::array<double, 2>{};
   };
-  return problem.moment.value_or(0.0) == 0.0 && problem.twist.value_or(0.0) == 0.0 &&
-         nothing(problem.force) && nothing(problem.displacement) &&
-         (problem.initial_displacement == 0.0).all() && (problem.start == 0.0).all();
+  return problem.moment.value_or(0.0) == 0.0 && problem.twist.value_or(0.0) == 0.0 && nothing(problem.force) &&
+         nothing(problem.displacement) && (problem.initial_displacement == 0.0).all() && (problem.start == 0.0).all();
 }
 
 /// No traction, and only the given motion: every cell with friction sticks.
@@ -168,8 +163,8 @@ TangentialSolution at_rest(const Grid& grid, const TangentialProblem& problem) {
 
 }  // namespace
 
-TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
-                                           TangentialProblem problem, const CoulombOptions& options) {
+TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid, TangentialProblem problem,
+                                           const CoulombOptions& options) {
   require_valid(problem, grid);
   if ((problem.friction_bound == 0.0).all() || is_at_rest(problem)) return at_rest(grid, problem);
   const NewtonOptions newton{.tolerance = options.tolerance,
@@ -184,8 +179,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                 .displacement = problem.displacement};
   const bool turns = !grid.quadrant && !problem.force && !problem.displacement &&
                      turns_into_itself(problem.initial_displacement) && turns_into_itself(problem.start);
-  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem), turns),
-                                      newton, options.on_cells_known);
+  NestedSummary nested =
+      solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem), turns), newton, options.on_cells_known);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

@@ -26,7 +26,7 @@ struct CoulombOptions {
 ///
 /// Throws std::invalid_argument for a problem that require_valid() rejects. A failure of the iteration is a
 /// status with its reason.
-TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
-                                           TangentialProblem problem, const CoulombOptions& options = {});
+TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid, TangentialProblem problem,
+                                           const CoulombOptions& options = {});
 
 }  // namespace slipstick::solver

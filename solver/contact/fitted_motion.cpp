@@ -74,10 +74,9 @@ SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoot
       Block& here = across[static_cast<std::size_t>(k)];
       here = (s1 * m2 - s2 * m1) / length;
       for (Index l = 0; l <= k; ++l) {
-        gap.hessian(k, l) +=
-            (weight * (here * across[static_cast<std::size_t>(l)] +
-                       smoothed * (m1 * part1(program.motion(l)) + m2 * part2(program.motion(l)))))
-                .sum();
+        gap.hessian(k, l) += (weight * (here * across[static_cast<std::size_t>(l)] +
+                                        smoothed * (m1 * part1(program.motion(l)) + m2 * part2(program.motion(l)))))
+                                 .sum();
       }
     }
   }
@@ -98,23 +97,21 @@ Coefficients least_slip(const Program& program, const ArrayXd& weight) {
   return SmallCholesky(matrix).solve(right);
 }
 
-/// Newton's method on bounds over their sum, and displacements over the root mean square of s at the start:
-/// that of least slip where cells stick, if many do. Smoothing by the gap there changes the sum by as much at
-/// most.
+/// Newton's method on bounds over their sum, and displacements over the root mean square of s at the start: that of
+/// least slip where cells stick, if many do. Smoothing by the gap there changes the sum by as much at most.
 Coefficients least_gap(Program& program) {
   const double total = program.bound.sum();
   program.bound /= total;
   program.traction /= total;
   const ArrayXd left = (program.bound - norms(program.traction)).max(0.0);
-  const Coefficients start = least_slip(
-      program, left.sum() > kSticks ? ArrayXd(left + kSlipSmoothing.least * program.bound) : program.bound);
+  const Coefficients start =
+      least_slip(program, left.sum() > kSticks ? ArrayXd(left + kSlipSmoothing.least * program.bound) : program.bound);
   const ArrayXd s = slip_of(program.displacement, program.motions, start);
   const double scale = std::sqrt((program.bound * dot_products(s, s)).sum());
   if (!(scale > 0.0)) return start;
   program.displacement /= scale;
   const double gap = ((program.traction * s).sum() + (program.bound * norms(s)).sum()) / scale;
-  const Smoothing smoothing{std::clamp(gap, kSlipSmoothing.least, kSlipSmoothing.first),
-                            kSlipSmoothing.least};
+  const Smoothing smoothing{std::clamp(gap, kSlipSmoothing.least, kSlipSmoothing.first), kSlipSmoothing.least};
   const auto move = [&](const SmoothedGap& from, const Coefficients& step, double by) {
     return evaluate(program, from.z + step, by);
   };

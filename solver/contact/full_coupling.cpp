@@ -96,8 +96,8 @@ class Turns {
   /// gap: relative gap at which to stop both; 0: the scene's tolerance.
   bool take(double gap) {
     solution_.normal = problem_.solve_pressure(opening_, {gap, pressure_});
-    solution_.tangential = problem_.solve_tractions(
-        solution_.normal.pressure, {gap <= problem_.tolerance ? 0.0 : gap, traction_guess()});
+    solution_.tangential =
+        problem_.solve_tractions(solution_.normal.pressure, {gap <= problem_.tolerance ? 0.0 : gap, traction_guess()});
     return converged();
   }
 
@@ -105,8 +105,7 @@ class Turns {
   ArrayXd traction_guess() const {
     if (traction_.size() == 0) return {};
     const ArrayXd size = norms(traction_);
-    const ArrayXd onto =
-        (slips_ && size > 0.0).select(problem_.friction_bound(solution_.normal.pressure) / size, 1.0);
+    const ArrayXd onto = (slips_ && size > 0.0).select(problem_.friction_bound(solution_.normal.pressure) / size, 1.0);
     return onto.replicate(2, 1) * traction_;
   }
 
@@ -160,8 +159,7 @@ class Turns {
   /// To the opening of the next turn, and its guesses.
   void advance(double step) {
     acceleration_.advance(opening_, change_, step);
-    if (pressure_.size() > 0)
-      switches_ += ((pressure_ > 0.0) != (solution_.normal.pressure > 0.0)).cast<int>();
+    if (pressure_.size() > 0) switches_ += ((pressure_ > 0.0) != (solution_.normal.pressure > 0.0)).cast<int>();
     pressure_ = std::move(solution_.normal.pressure);
     traction_ = std::move(solution_.tangential.traction);
     slips_ = solution_.tangential.stick == 0.0;
@@ -182,8 +180,7 @@ class Turns {
 
 }  // namespace
 
-CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
-                                    const CoupledProblem& problem) {
+CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid, const CoupledProblem& problem) {
   return Turns(elasticity, grid, problem).run();
 }
 

@@ -72,7 +72,6 @@ struct CoupledSolution {
 ///    does not fall; again from 1.
 ///
 /// Divergence is a status with its reason.
-CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
-                                    const CoupledProblem& problem);
+CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid, const CoupledProblem& problem);
 
 }  // namespace slipstick::solver

@@ -29,9 +29,8 @@ constexpr double kTolerance = 2e-15;
 /// The root mean square of |v| is 1 at the start.
 constexpr Smoothing kSmoothing{.first = 0.1, .least = 1e-15};
 
-/// The contact's cells, lengths over its radius of gyration from its centroid, friction bounds over their
-/// sum. A motion is (velocity of the centroid, rotation times radius of gyration), so that the mean square of
-/// |v| is |motion|^2.
+/// The contact's cells, lengths over its radius of gyration from its centroid, friction bounds over their sum. A motion
+/// is (velocity of the centroid, rotation times radius of gyration), so that the mean square of |v| is |motion|^2.
 struct Contact {
   ArrayXd x1, x2, bound;
   double total = 0.0;  ///< friction bound
@@ -146,8 +145,7 @@ struct Motions {
 /// smoothed law leaves the traction open, absorbs as much of r as it can. The rest is multiplied by the
 /// largest possible distance of the minimiser: work >= bound |v|^2 / max |v| >=
 /// gyration^2 |motion| / sqrt(1 + radius^2).
-double lower_bound(const Contact& contact, const Friction& friction, const Motions& motions,
-                   double smoothing) {
+double lower_bound(const Contact& contact, const Friction& friction, const Motions& motions, double smoothing) {
   if (contact.bound.size() == 0) return 0.0;
   const Index k = friction.slowest;
   Matrix<double, 2, 3> velocity;
@@ -163,8 +161,7 @@ double lower_bound(const Contact& contact, const Friction& friction, const Motio
   const double left = (residual + balance * change).norm();
   const double work = friction.resultant.dot(friction.motion) + change.dot(v);
   if (left == 0.0) return work;
-  const double furthest =
-      friction.work * std::hypot(1.0, contact.radius) / (contact.gyration * contact.gyration);
+  const double furthest = friction.work * std::hypot(1.0, contact.radius) / (contact.gyration * contact.gyration);
   return std::max(0.0, work - left * (friction.motion.norm() + furthest));
 }
 
@@ -257,8 +254,7 @@ LimitLoad find_limit(const Grid& grid, const ArrayXd& friction_bound, const Impo
 double free_moment_limit(const Grid& grid, const ArrayXd& friction_bound) {
   // The sum is convex in c: half a turn that leaves the bounds leaves a least one at the origin.
   const bool at_origin = friction_bound.isFinite().all() && is_half_turn_symmetric(grid, friction_bound);
-  return at_origin ? moment_limit(grid, friction_bound)
-                   : find_limit(grid, friction_bound, {0.0, 0.0, 1.0}).factor;
+  return at_origin ? moment_limit(grid, friction_bound) : find_limit(grid, friction_bound, {0.0, 0.0, 1.0}).factor;
 }
 
 }  // namespace slipstick::solver

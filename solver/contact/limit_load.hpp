@@ -20,9 +20,9 @@ using ImposedLoads = std::array<std::optional<double>, 3>;
 
 /// The load at which the whole contact slides.
 struct LimitLoad {
-  double factor;        ///< limit load over the given loads; infinite if these are all zero
-  double carried;       ///< proven lower bound of it: admissible tractions balance these loads
-  RigidMotion sliding;  ///< the motion at the limit; the given loads do unit work in it
+  double factor;                                ///< limit load over the given loads; infinite if these are all zero
+  double carried;                               ///< proven lower bound of it: admissible tractions balance these loads
+  RigidMotion sliding;                          ///< the motion at the limit; the given loads do unit work in it
   std::optional<std::array<double, 2>> centre;  ///< of sliding; empty: pure translation
 };
 

@@ -64,9 +64,8 @@ class PressureOnGrid {
     ArrayXd opening = prolong_to(grid_, coarse.grid_, coarse.displacement_, kPressureParities);
     opening += *gap_ - found.multipliers[0];
     const Sweep closed = cells_where([&](Index i) { return opening[i] < 0.0; });
-    const double square = closed.sum<double>([&](Index first, Index last, double& sum) {
-      sum += opening.segment(first, last - first).square().sum();
-    });
+    const double square = closed.sum<double>(
+        [&](Index first, Index last, double& sum) { sum += opening.segment(first, last - first).square().sum(); });
     const double overlap = std::sqrt(square / static_cast<double>(std::max<Index>(closed.count(), 1)));
     set_candidates([&](Index i) { return can_touch(i) && (pressure[i] > 0.0 || opening[i] < overlap); });
   }
@@ -99,8 +98,7 @@ class PressureOnGrid {
       return false;
     }
     result.field = packing_.unpacked(result.field);
-    set_candidates(
-        [&](Index i) { return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + missed; });
+    set_candidates([&](Index i) { return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + missed; });
     return true;
   }
 
@@ -115,8 +113,7 @@ class PressureOnGrid {
   template <typename Contains>
   void set_candidates(const Contains& contains) {
     cells_ = cells_where(contains);
-    if (static_cast<double>(cells_.count()) > kMostOfAll * static_cast<double>(reachable_.count()))
-      cells_ = reachable_;
+    if (static_cast<double>(cells_.count()) > kMostOfAll * static_cast<double>(reachable_.count())) cells_ = reachable_;
   }
 
   Grid grid_;
@@ -141,8 +138,8 @@ void require_valid(const NormalProblem& problem, const Grid& grid) {
   }
 }
 
-NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
-                                   const NormalProblem& problem, const NormalOptions& options) {
+NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid, const NormalProblem& problem,
+                                   const NormalOptions& options) {
   const PressureOnGrid::Gap gap(PressureOnGrid::Gap(), &problem.gap);  // not owned
   PressureOnGrid contact(grid, gap, problem.total_pressure, problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
@@ -176,8 +173,8 @@ ArrayXd coarsened_gap(const Grid& coarse, const Grid& grid, const ArrayXd& gap) 
   return (part >= std::min(0.5, most)).select(height / part.max(0.25 * most), INFINITY);
 }
 
-NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
-                                    const NormalProblem& problem, const NormalOptions& options) {
+NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid, const NormalProblem& problem,
+                                    const NormalOptions& options) {
   require_valid(problem, grid);
   // The same guess does not come twice.
   if (problem.guess.size() > 0 || !elasticity.usable_cache())
@@ -187,9 +184,7 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
   key.add(options.tolerance).add(options.max_applications).add(options.refine_approach);
   const Cached<NormalSolution> solution(
       elasticity.usable_cache(), std::move(key),
-      [&] {
-        return std::make_unique<NormalSolution>(find_normal_contact(elasticity, grid, problem, options));
-      },
+      [&] { return std::make_unique<NormalSolution>(find_normal_contact(elasticity, grid, problem, options)); },
       sizeof(NormalSolution) + sizeof(double) * static_cast<double>(grid.cells()));
   return *solution;
 }

@@ -31,8 +31,7 @@ struct NormalSolution {
   std::string message;      ///< why it did not converge; empty if it did
   Eigen::ArrayXd pressure;  ///< one value a cell
   double approach = 0.0;    ///< u3 + h where the bodies touch
-  /// (energy - least possible energy) / (p.Kp/2) is at most this: sum over p of the gap left open above its
-  /// minimum.
+  /// (energy - least possible energy) / (p.Kp/2) is at most this: sum over p of the gap left open above its minimum.
   double complementarity = 0.0;
   double load_error = 0.0;  ///< relative
   int iterations = 0;
@@ -52,7 +51,7 @@ Eigen::ArrayXd coarsened_gap(const Grid& coarse, const Grid& grid, const Eigen::
 /// 4. If another cell opens less than the candidates, more candidates, and again from 3.
 ///
 /// Throws std::invalid_argument for a load that is not positive or a gap that is nowhere finite or NaN.
-NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
-                                    const NormalProblem& problem, const NormalOptions& options = {});
+NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid, const NormalProblem& problem,
+                                    const NormalOptions& options = {});
 
 }  // namespace slipstick::solver

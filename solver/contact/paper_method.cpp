@@ -31,8 +31,8 @@ struct PaperProblem {
 PaperProblem paper_problem(const TangentialProblem& problem, const Grid& grid) {
   return {.problem = problem,
           .t = rotation_field(grid),
-          .initial_displacement = problem.initial_displacement.size() > 0 ? problem.initial_displacement
-                                                                          : ArrayXd::Zero(2 * grid.cells()),
+          .initial_displacement =
+              problem.initial_displacement.size() > 0 ? problem.initial_displacement : ArrayXd::Zero(2 * grid.cells()),
           .contact = (problem.friction_bound > 0.0).cast<double>(),
           .total_friction = problem.friction_bound.sum()};
 }
@@ -133,16 +133,15 @@ bool within_bounds(const PaperProblem& given, const ArrayXd& q, double tolerance
 }
 
 /// Section 4 of the paper, with the numbers of its steps.
-PaperEnding iterate(LinearOperator& op, const PaperProblem& given, const PaperOptions& options,
-                    StickArea& stick, PaperState& at) {
+PaperEnding iterate(LinearOperator& op, const PaperProblem& given, const PaperOptions& options, StickArea& stick,
+                    PaperState& at) {
   ConjugateStep step{at.q, at.q};
   ArrayXd q0;
   double S0 = 1.0;
   double change = 0.0;
   bool changed = true;  // whether A_S is new: displacements afresh, theta = 0
   const auto failure = [&](const char* what, int iteration, const std::string& numbers) -> PaperEnding {
-    return {Status::not_converged, fmt::format("{} in iteration {}: {}", what, iteration, numbers), change,
-            iteration};
+    return {Status::not_converged, fmt::format("{} in iteration {}: {}", what, iteration, numbers), change, iteration};
   };
   // The initial guess, Eq. (13): tractions like a rotation, scaled to the moment, all cells in stick.
   balance_moment(given, stick, at.q);
@@ -163,8 +162,7 @@ PaperEnding iterate(LinearOperator& op, const PaperProblem& given, const PaperOp
     /*  5 */ S0 = at.S;
     /*  6 */ find_step_length(op, at, step);
     if (at.S > 0.0 && !(step.curvature > 0.0)) {
-      return failure("indefinite operator", iteration,
-                     fmt::format("d.Kd = {}, S = {}", step.curvature, at.S));
+      return failure("indefinite operator", iteration, fmt::format("d.Kd = {}, S = {}", step.curvature, at.S));
     }
     /*  7 */ q0 = at.q;                    // Eq. (20)
     /*  8 */ at.q -= step.alpha * step.d;  // Eq. (21)
@@ -175,13 +173,11 @@ PaperEnding iterate(LinearOperator& op, const PaperProblem& given, const PaperOp
     if (change <= options.tolerance && within_bounds(given, at.q, options.tolerance))
       return {Status::converged, "", change, iteration};
   }
-  return {
-      Status::not_converged,
-      fmt::format(
-          "too many iterations: change {:.3g} of the sum of mu p after {}, tolerance {:.3g}{}", change,
-          options.max_iterations, options.tolerance,
-          within_bounds(given, at.q, options.tolerance) ? "" : ", and |q| is above mu p by more than that"),
-      change, options.max_iterations};
+  return {Status::not_converged,
+          fmt::format("too many iterations: change {:.3g} of the sum of mu p after {}, tolerance {:.3g}{}", change,
+                      options.max_iterations, options.tolerance,
+                      within_bounds(given, at.q, options.tolerance) ? "" : ", and |q| is above mu p by more than that"),
+          change, options.max_iterations};
 }
 
 }  // namespace

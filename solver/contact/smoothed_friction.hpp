@@ -23,8 +23,7 @@ struct Smoothing {
 /// evaluate(point, step, s): the Point at a step of the variables from `point`, with the members `smoothed`,
 /// the sum, and its derivatives `gradient` and `hessian`.
 template <class Point, class Evaluate, class Done>
-Point minimise_smoothed(const Point& start, const Smoothing& smoothing, const Evaluate& evaluate,
-                        const Done& done) {
+Point minimise_smoothed(const Point& start, const Smoothing& smoothing, const Evaluate& evaluate, const Done& done) {
   constexpr double kReduction = 0.1;
   constexpr double kSettled = 0.01;
   constexpr double kRounding = 1e-15;

@@ -24,9 +24,8 @@ constexpr double kLateral = 3.5;    // the fit takes cells up to here on both si
 constexpr double kWidestAngle = 0.4;
 constexpr double kFarthest = 24.0;  // cells further from the front than this take part in no fit
 constexpr double kLargestShift = 2.0;
-constexpr int kPasses = 4;  // each measures distances from the last one's front
-constexpr double kAroundQuadrant =
-    kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
+constexpr int kPasses = 4;                              // each measures distances from the last one's front
+constexpr double kAroundQuadrant = kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
 
 /// The part of the slip ring next to the front that is fitted on a ray, and the degree in the distance.
 struct Window {
@@ -95,8 +94,7 @@ double fitted_root(const std::vector<Sample> &samples, const Window &depth) {
   return middle + half * x;
 }
 
-/// Largest error of counting, in cells: a fit that differs by more rests on slip that did not begin at the
-/// front.
+/// Largest error of counting, in cells: a fit that differs by more rests on slip that did not begin at the front.
 constexpr double kLargestCorrection = 0.5;
 
 /// A contact's cells: which press, slip and stick.
@@ -217,9 +215,7 @@ class Rays {
     if (!mirrored_) return {ray};
     return {ray, count_ / 2 - 1 - ray, count_ / 2 + ray, count_ - 1 - ray};
   }
-  double angle(Index ray) const {
-    return kTurn * (static_cast<double>(ray) + 0.5) / static_cast<double>(count_);
-  }
+  double angle(Index ray) const { return kTurn * (static_cast<double>(ray) + 0.5) / static_cast<double>(count_); }
 
   /// Values on the rays, linear in the angle between them.
   struct Between {
@@ -316,8 +312,7 @@ class FrontFit {
       front.why_counted =
           fmt::format("slip ring too narrow, or no root near by, on {} of {} rays", count - fitted, count);
     }
-    if (!(std::abs(front.radius - front.counted_radius) <=
-          kLargestCorrection * std::sqrt(cells.cell_area()))) {
+    if (!(std::abs(front.radius - front.counted_radius) <= kLargestCorrection * std::sqrt(cells.cell_area()))) {
       front.radius = front.counted_radius;
       front.why_counted =
           "outside the front the slip does not grow as it does if slip began at the front and continued";
@@ -343,8 +338,7 @@ class FrontFit {
       const bool stuck = cells.sticks(i, j);
       if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
       const double theta = rays_.angle_of(i, j);
-      if (rays_.mirrored() && theta > 0.25 * kTurn + kAroundQuadrant && theta < kTurn - kAroundQuadrant)
-        return;
+      if (rays_.mirrored() && theta > 0.25 * kTurn + kAroundQuadrant && theta < kTurn - kAroundQuadrant) return;
       const Rays::Between rays = rays_.between(theta);
       const double beyond = r - rays.of(rays_.counted());
       if (stuck ? beyond > kStaircase : beyond < -kStaircase) star_shaped_ = false;
@@ -397,8 +391,7 @@ std::string fit_front(const FrontCells &cells, double stick_cells, StickFront &f
 
 StickFront find_stick_front(const Grid &grid, const ArrayXd &friction_bound, const ArrayXd &slip,
                             const ArrayXd &stick) {
-  if (friction_bound.size() != grid.cells() || stick.size() != grid.cells() ||
-      slip.size() != 2 * grid.cells()) {
+  if (friction_bound.size() != grid.cells() || stick.size() != grid.cells() || slip.size() != 2 * grid.cells()) {
     throw std::invalid_argument("stick front: fields of another size than the grid's");
   }
   if (grid.quadrant) throw std::invalid_argument("stick front: allowed: whole grids, no quadrants");

@@ -28,7 +28,7 @@ struct StickFront {
 ///
 /// friction_bound, stick: grid.cells() values; slip: twice as many. The radius is NaN where they are not
 /// finite (slip: in the contact). Throws std::invalid_argument for fields of another size and for a quadrant.
-StickFront find_stick_front(const Grid& grid, const Eigen::ArrayXd& friction_bound,
-                            const Eigen::ArrayXd& slip, const Eigen::ArrayXd& stick);
+StickFront find_stick_front(const Grid& grid, const Eigen::ArrayXd& friction_bound, const Eigen::ArrayXd& slip,
+                            const Eigen::ArrayXd& stick);
 
 }  // namespace slipstick::solver

@@ -54,10 +54,10 @@ void require_valid(const TangentialProblem& problem, const Grid& grid) {
   }
   const double factor = problem.limit_factor ? *problem.limit_factor : limit_of(problem, grid).factor;
   if (!(factor > 1.0)) {
-    throw std::invalid_argument(fmt::format(
-        "gross slip: the contact carries {} times these loads (over the cell area); allowed: less than it "
-        "carries",
-        factor));
+    throw std::invalid_argument(
+        fmt::format("gross slip: the contact carries {} times these loads (over the cell area); allowed: less than it "
+                    "carries",
+                    factor));
   }
 }
 

@@ -25,9 +25,9 @@ struct TangentialProblem {
   /// there are no translations: the contact is its own image under half a turn and carries no force.
   std::optional<std::array<double, 2>> force = {};
   std::optional<std::array<double, 2>> displacement = {};
-  Eigen::ArrayXd start = {};   ///< tractions of the state before, 2*cells; empty: none
-  double energy_before = 0.0;  ///< see ConvexProgram; of the whole grid, over the cell area
-  Eigen::ArrayXd guess = {};   ///< tractions near the answer, 2*cells; empty: found from coarser grids
+  Eigen::ArrayXd start = {};                ///< tractions of the state before, 2*cells; empty: none
+  double energy_before = 0.0;               ///< see ConvexProgram; of the whole grid, over the cell area
+  Eigen::ArrayXd guess = {};                ///< tractions near the answer, 2*cells; empty: found from coarser grids
   std::optional<double> limit_factor = {};  ///< of the loads, see LimitLoad, where it is known
 };
 
@@ -47,8 +47,7 @@ struct TangentialSolution {
   double part = 1.0;                 ///< contact cells over all cells
 };
 
-/// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p
-/// r.
+/// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p r.
 double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound);
 
 /// The limit load for the problem's imposed loads. Without translations the body turns about the origin, also

@@ -16,11 +16,9 @@ bool is_imaginary(Component component) { return parity(component).x1 != parity(c
 Index distinct_even(Index m) { return m / 2 + 1; }
 Index distinct_odd(Index m) { return (m + 1) / 2; }
 
-/// x_a[i] = sum over b of sign_ab factor_ab[step i] x_b[i], times the imaginary unit if the spectra are
-/// imaginary.
+/// x_a[i] = sum over b of sign_ab factor_ab[step i] x_b[i], times the imaginary unit if the spectra are imaginary.
 template <std::size_t outputs, std::size_t inputs, bool imaginary, int step>
-void multiply_run(std::array<double*, 2> x, std::array<const double*, 4> factor, std::array<double, 4> sign,
-                  Index n) {
+void multiply_run(std::array<double*, 2> x, std::array<const double*, 4> factor, std::array<double, 4> sign, Index n) {
   for (Index i = 0; i < n; ++i) {
     std::array<double, outputs> re{};
     std::array<double, outputs> im{};
@@ -72,8 +70,7 @@ auto Convolution::multiply_for(const BlockKernel& kernel) -> Multiply {
   throw std::invalid_argument("no convolution with a kernel of this shape");
 }
 
-Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
-                         const OperatorOptions& options)
+Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)),
       transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
       components_(this->kernel().distinct()),
@@ -97,15 +94,14 @@ void Convolution::set_spectra(const ElasticLaw& law) {
     for (Index j = 0; j < grid.n2; ++j) quadrant[count(j)] *= 0.5;
     transform_.forward_rows(quadrant);
     transform_.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
-      set_factors(components_[slot], spectrum.even[0], spectrum.odd[0],
-                  spectra_.data() + start(column, slot));
+      set_factors(components_[slot], spectrum.even[0], spectrum.odd[0], spectra_.data() + start(column, slot));
     });
   }
 }
 
 /// From one column of Q.
-void Convolution::set_factors(Component component, const std::complex<double>* even,
-                              const std::complex<double>* odd, double* factors) const {
+void Convolution::set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
+                              double* factors) const {
   const Index m1 = padded1() / 2;
   const double scale = 2.0 / (static_cast<double>(padded1()) * static_cast<double>(padded2()));
   const double sign = parity(component).x1;

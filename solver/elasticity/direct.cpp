@@ -32,8 +32,7 @@ std::vector<double> all_offsets(Component component, const ElasticLaw& law, cons
 
 }  // namespace
 
-DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
-                     const OperatorOptions& options)
+DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)),
       source_(inputs() * static_cast<std::size_t>(grid.cells())),
       threads_(std::max(options.threads, 1)) {

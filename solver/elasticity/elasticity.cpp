@@ -13,8 +13,7 @@ namespace slipstick::solver {
 namespace {
 
 /// Only the tangential kernel uses the mirror at the diagonal.
-OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel,
-                           std::span<double> memory = {}) {
+OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel, std::span<double> memory = {}) {
   return {.threads = elasticity.threads,
           .diagonal = elasticity.diagonal && kernel.inputs == 2,
           .at_edge = elasticity.at_edge,
@@ -88,9 +87,7 @@ std::size_t place_of(const Elasticity& elasticity, const Grid& grid, const Block
 
 /// This rank's bytes, for a number of doubles per padded cell.
 double padded_bytes(double doubles, const Grid& grid) {
-  const auto padded = [](Index cells) {
-    return static_cast<double>(fast_length(2 * std::max(cells, kMinSide) - 1));
-  };
+  const auto padded = [](Index cells) { return static_cast<double>(fast_length(2 * std::max(cells, kMinSide) - 1)); };
   const double part = static_cast<double>(own_rows(grid).count()) / static_cast<double>(grid.n1);
   return sizeof(double) * doubles * padded(grid.n1) * padded(grid.n2) * part;
 }
@@ -135,16 +132,15 @@ double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel, dou
 
 Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
   Cached<LinearOperator> op(
-      usable_cache(), with_kernel(key("operator", grid), kernel),
-      [&] { return new_operator(*this, grid, kernel); }, operator_bytes(grid, kernel));
+      usable_cache(), with_kernel(key("operator", grid), kernel), [&] { return new_operator(*this, grid, kernel); },
+      operator_bytes(grid, kernel));
   op->restart_count();
   return op;
 }
 
 GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
     : op(new_operator(elasticity, grid, kernel)),
-      symbol(make_inverse_symbol(grid, kernel, *elasticity.law,
-                                 options_of(elasticity, kernel, op->idle_memory()))) {}
+      symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel, op->idle_memory()))) {}
 
 Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators> operators(

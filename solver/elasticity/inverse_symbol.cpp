@@ -51,8 +51,7 @@ void mix(Index count, double sign, const double* __restrict p11, const double* _
 /// On a whole grid, padded with zeros to fast lengths.
 class PeriodicInverseSymbol final : public InverseSymbol {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
-                        const OperatorOptions& options)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law, const OperatorOptions& options)
       : grid_(grid),
         periodic_(padded(grid, options.at_edge)),
         fields_(tangential ? 2 : 1),
@@ -78,11 +77,8 @@ class PeriodicInverseSymbol final : public InverseSymbol {
 
  private:
   static PeriodicTransform::Shape shape(const Grid& grid, const Grid& periodic, bool tangential) {
-    return {.n1 = periodic.n1,
-            .n2 = periodic.n2,
-            .fields = tangential ? 2 : 1,
-            .samples = grid.n1,
-            .ranks = grid.ranks};
+    return {
+        .n1 = periodic.n1, .n2 = periodic.n2, .fields = tangential ? 2 : 1, .samples = grid.n1, .ranks = grid.ranks};
   }
 
   /// Where row i of a field is transformed: where it is, if it needs no zeros.
@@ -135,8 +131,8 @@ class PeriodicInverseSymbol final : public InverseSymbol {
 
 }  // namespace
 
-std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                   const ElasticLaw& law, const OperatorOptions& options) {
+std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel, const ElasticLaw& law,
+                                                   const OperatorOptions& options) {
   const bool tangential = kernel == tangential_kernel();
   if (!tangential && kernel != normal_kernel()) {
     throw std::invalid_argument("only the normal and the tangential kernel have an inverse symbol");

@@ -33,12 +33,10 @@ class InverseSymbol {
 
 /// The inverse symbol for the fields of part_of(). Throws as that, and std::invalid_argument for a kernel
 /// other than the normal or the tangential one.
-std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                   const ElasticLaw& law,
+std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel, const ElasticLaw& law,
                                                    const OperatorOptions& options = {});
 /// On a quadrant.
-std::unique_ptr<InverseSymbol> make_mirrored_inverse_symbol(const Grid& grid, bool tangential,
-                                                            const ElasticLaw& law,
+std::unique_ptr<InverseSymbol> make_mirrored_inverse_symbol(const Grid& grid, bool tangential, const ElasticLaw& law,
                                                             const OperatorOptions& options);
 
 }  // namespace slipstick::solver

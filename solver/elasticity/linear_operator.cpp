@@ -15,9 +15,7 @@ std::vector<Component> BlockKernel::distinct() const {
 
 BlockKernel normal_kernel() { return {1, 1, {Component::k33}}; }
 
-BlockKernel tangential_kernel() {
-  return {2, 2, {Component::k11, Component::k12, Component::k12, Component::k22}};
-}
+BlockKernel tangential_kernel() { return {2, 2, {Component::k11, Component::k12, Component::k12, Component::k22}}; }
 
 BlockKernel coupling_kernel() { return {2, 1, {Component::k13, Component::k23}}; }
 
@@ -52,8 +50,7 @@ std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& gri
 }
 
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel) {
-  return grid.quadrant ? MirroredConvolution::sent_bytes(grid, kernel)
-                       : Convolution::sent_bytes(grid, kernel);
+  return grid.quadrant ? MirroredConvolution::sent_bytes(grid, kernel) : Convolution::sent_bytes(grid, kernel);
 }
 
 }  // namespace slipstick::solver

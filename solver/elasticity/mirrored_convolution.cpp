@@ -119,8 +119,7 @@ FftwBuffer MirroredConvolution::kernel_spectrum(Component component, std::vector
     for (Index k1 = start + begin; k1 < start + end; ++k1) {
       for (Index k2 = std::max(first, start); k2 < last; ++k2) {
         const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
-        spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] =
-            (scale * values[count(from)]);
+        spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] = (scale * values[count(from)]);
       }
     }
   });
@@ -145,8 +144,7 @@ Parity MirroredConvolution::parity_of(Index field) const {
 
 double MirroredConvolution::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
   const Index column_groups = groups(Transform::frequencies(quadrant.n2), kLines);
-  return static_cast<double>(kernel.inputs + kernel.outputs) *
-         shared_matrix(quadrant, column_groups).sent_bytes();
+  return static_cast<double>(kernel.inputs + kernel.outputs) * shared_matrix(quadrant, column_groups).sent_bytes();
 }
 
 void MirroredConvolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
@@ -157,9 +155,8 @@ void MirroredConvolution::do_apply(std::span<const double> traction, std::span<d
   };
   const auto in_row_groups = [&](const auto& work) {
     const Index own = own_row_groups_.count();
-    in_groups(fields() * own, [&](int thread, Index group) {
-      work(thread, group / own, own_row_groups_.first + group % own);
-    });
+    in_groups(fields() * own,
+              [&](int thread, Index group) { work(thread, group / own, own_row_groups_.first + group % own); });
   };
   in_row_groups([&](int thread, Index field, Index group) {
     rows_forward(thread, field, group, traction.data() + field * grid().cells());
@@ -196,8 +193,7 @@ void MirroredConvolution::rows_backward(int thread, Index field, Index group, do
   const Index rows = std::min(kLines, grid().n1 - group * kLines);
   const double* const block = half_transformed(field, group);
   along2_.backward(row_workspaces_[count(thread)],
-                   {.data = values + group * kLines * n2, .line_stride = n2, .count = rows},
-                   parity_of(field).x2,
+                   {.data = values + group * kLines * n2, .line_stride = n2, .count = rows}, parity_of(field).x2,
                    [block](Index k2) { return Transform::packets(block + k2 * kLines); });
 }
 

@@ -31,8 +31,7 @@ namespace slipstick::solver {
 class MirroredConvolution final : public LinearOperator {
  public:
   /// Throws what part_of() throws for the grid of a quadrant.
-  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticLaw& law,
-                      const OperatorOptions& options);
+  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options);
   static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 
  private:

@@ -31,12 +31,7 @@ Grid mirrored(const Grid& grid) {
 Index reordered(Index i, Index t) { return i % 2 == 0 ? i / 2 : t - 1 - i / 2; }
 
 PeriodicTransform::Shape plane_of(const Grid& grid, bool two_fields) {
-  return {transform_length(grid.n1),
-          transform_length(grid.n2),
-          two_fields ? 2 : 1,
-          grid.n1,
-          reordered,
-          grid.ranks};
+  return {transform_length(grid.n1), transform_length(grid.n2), two_fields ? 2 : 1, grid.n1, reordered, grid.ranks};
 }
 
 /// The frequencies f2 of a row of coefficients: k for cosines, then t - k for sines.
@@ -54,8 +49,7 @@ std::size_t entries_in_use(bool tangential, bool symmetric) { return tangential 
 Index twiddle_size(Index t1, Index half) { return 2 * (t1 / 2 + 1 + half); }
 
 /// n samples, those at even and at odd places times a sign each, padded to t.
-void reorder(const double* __restrict values, Index n, double even, double odd, Index t,
-             double* __restrict row) {
+void reorder(const double* __restrict values, Index n, double even, double odd, Index t, double* __restrict row) {
   if (n < t) std::fill_n(row, t, 0.0);
   for (Index k = 0; k < n / 2; ++k) {
     row[k] = even * values[2 * k];
@@ -64,8 +58,7 @@ void reorder(const double* __restrict values, Index n, double even, double odd, 
   if (n % 2 != 0) row[n / 2] = even * values[n - 1];
 }
 
-void restore(const double* __restrict row, Index n, double even, double odd, Index t,
-             double* __restrict values) {
+void restore(const double* __restrict row, Index n, double even, double odd, Index t, double* __restrict values) {
   for (Index k = 0; k < n / 2; ++k) {
     values[2 * k] = even * row[k];
     values[2 * k + 1] = odd * row[t - 1 - k];
@@ -81,8 +74,7 @@ void restore(const double* __restrict row, Index n, double even, double odd, Ind
 ///     cc = Re(A + B)/2,  cs = -Im(A + B)/2,  sc = Im(B - A)/2,  ss = Re(B - A)/2.
 template <typename Count>
 void separate_rows(Count count, Twiddles w, const double* __restrict a, const double* __restrict b,
-                   double* __restrict cc, double* __restrict cs, double* __restrict sc,
-                   double* __restrict ss) {
+                   double* __restrict cc, double* __restrict cs, double* __restrict sc, double* __restrict ss) {
   for (Index k = 0; k < count; ++k) {
     const double sum_real = a[2 * k] + b[2 * k];
     const double sum_imaginary = a[2 * k + 1] + b[2 * k + 1];
@@ -102,8 +94,7 @@ void separate_rows(Count count, Twiddles w, const double* __restrict a, const do
 /// The inverse of separate_rows(), times 2.
 template <typename Count>
 void join_rows(Count count, Twiddles w, const double* __restrict cc, const double* __restrict cs,
-               const double* __restrict sc, const double* __restrict ss, double* __restrict a,
-               double* __restrict b) {
+               const double* __restrict sc, const double* __restrict ss, double* __restrict a, double* __restrict b) {
   for (Index k = 0; k < count; ++k) {
     const double sr = w.c * cc[k] + w.s * sc[k];
     const double si = -w.c * cs[k] - w.s * ss[k];
@@ -126,8 +117,8 @@ void scale(Count count, const double* __restrict p, double* __restrict x) {
 }
 
 template <typename Count>
-void mix(Count count, const double* __restrict p11, const double* __restrict p12,
-         const double* __restrict p22, double* __restrict x1, double* __restrict x2) {
+void mix(Count count, const double* __restrict p11, const double* __restrict p12, const double* __restrict p22,
+         double* __restrict x1, double* __restrict x2) {
   for (Index k = 0; k < count; ++k) {
     const double first = x1[k];
     x1[k] = p11[k] * first + p12[k] * x2[k];
@@ -137,9 +128,8 @@ void mix(Count count, const double* __restrict p11, const double* __restrict p12
 
 /// p11 x - p12 y, y every step-th value. At the frequency 0 p12 is zero, and there may be no y.
 template <typename Count>
-void mix_with_other_half(Count count, bool from_zero, const double* __restrict p11,
-                         const double* __restrict p12, const double* __restrict x, const double* __restrict y,
-                         Index step, double* __restrict out) {
+void mix_with_other_half(Count count, bool from_zero, const double* __restrict p11, const double* __restrict p12,
+                         const double* __restrict x, const double* __restrict y, Index step, double* __restrict out) {
   if (from_zero) out[0] = p11[0] * x[0];
   for (Index k = from_zero ? 1 : 0; k < count; ++k) out[k] = p11[k] * x[k] - p12[k] * y[k * step];
 }
@@ -166,8 +156,7 @@ void with_count(Index count, const Work& work) {
 class MirroredInverseSymbol final : public InverseSymbol {
  public:
   /// With options.diagonal only the first component is transformed; the second is minus its transpose.
-  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
-                        const OperatorOptions& options)
+  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law, const OperatorOptions& options)
       : grid_(grid),
         tangential_(tangential),
         symmetric_(options.diagonal),
@@ -262,9 +251,8 @@ class MirroredInverseSymbol final : public InverseSymbol {
   // In some columns. count: their number, known to the compiler where they fill a cache line.
   template <typename Count>
   void separate(const Columns& columns, Count count, Index f, Index k1, Coefficients& to) const {
-    separate_rows(count, twiddles(k1, columns.first), columns.row(f, k1),
-                  columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc.data(), to.cs.data(), to.sc.data(),
-                  to.ss.data());
+    separate_rows(count, twiddles(k1, columns.first), columns.row(f, k1), columns.row(f, k1 == 0 ? 0 : t1_ - k1),
+                  to.cc.data(), to.cs.data(), to.sc.data(), to.ss.data());
   }
 
   /// Rows 0 and t1/2 are their own partners, so that only one of two results is kept.
@@ -272,8 +260,8 @@ class MirroredInverseSymbol final : public InverseSymbol {
   void join(const Coefficients& from, const Columns& columns, Count count, Index f, Index k1) const {
     std::array<double, static_cast<std::size_t>(2 * kColumns)> dummy_row;
     const bool own_partner = k1 == 0 || 2 * k1 == t1_;
-    join_rows(count, twiddles(k1, columns.first), from.cc.data(), from.cs.data(), from.sc.data(),
-              from.ss.data(), columns.row(f, k1), own_partner ? dummy_row.data() : columns.row(f, t1_ - k1));
+    join_rows(count, twiddles(k1, columns.first), from.cc.data(), from.cs.data(), from.sc.data(), from.ss.data(),
+              columns.row(f, k1), own_partner ? dummy_row.data() : columns.row(f, t1_ - k1));
   }
 
   template <typename Count>
@@ -290,8 +278,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
   /// q1 is odd in x2 and q2 in x1. Cosines have the frequency k, sines t - k, and alternating signs make that
   /// k again: so cs of q1 belongs to the same frequencies as sc of q2, and so on.
   template <typename Count>
-  void multiply_rows(std::array<Coefficients, 2>& fields, const Columns& columns, Count count,
-                     Index k1) const {
+  void multiply_rows(std::array<Coefficients, 2>& fields, const Columns& columns, Count count, Index k1) const {
     const Index first = columns.first - columns_.first;
     const Index sines = first + columns_.count();
     auto& [x, y] = fields;
@@ -341,8 +328,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
       const Index step = sines ? -stride : stride;
       const double* const other = spectrum(sines ? t1_ : 0) + other_column + first * step;
       mix_with_other_half(count, first == 0, table_.row(SymbolEntry::p11, f1) + column,
-                          table_.row(SymbolEntry::p12, f1) + column, spectrum(f1) + column, other, step,
-                          out.data());
+                          table_.row(SymbolEntry::p12, f1) + column, spectrum(f1) + column, other, step, out.data());
     };
     Coefficients to{};
     for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
@@ -387,8 +373,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
 
 }  // namespace
 
-std::unique_ptr<InverseSymbol> make_mirrored_inverse_symbol(const Grid& grid, bool tangential,
-                                                            const ElasticLaw& law,
+std::unique_ptr<InverseSymbol> make_mirrored_inverse_symbol(const Grid& grid, bool tangential, const ElasticLaw& law,
                                                             const OperatorOptions& options) {
   return std::make_unique<MirroredInverseSymbol>(grid, tangential, law, options);
 }

@@ -52,16 +52,14 @@ SymbolTable::SymbolTable(const Grid& grid, const ElasticLaw& law, std::size_t en
                          const std::vector<Index>& columns, double factor)
     : columns_(static_cast<Index>(columns.size())) {
   const Index rows = grid.n1 / 2 + 1;
-  for (std::size_t e = 0; e < entries; ++e)
-    tables_[e] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
+  for (std::size_t e = 0; e < entries; ++e) tables_[e] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
   in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
     SymbolRow symbols(grid, law, entries > 1, columns);
     for (Index f1 = first; f1 < last; ++f1) {
       const std::span<const Symbol> inverses = symbols.at(f1);
       for (std::size_t e = 0; e < entries; ++e) {
         double* const row = tables_[e].data() + f1 * columns_;
-        for (std::size_t column = 0; column < columns.size(); ++column)
-          row[column] = factor * inverses[column][e];
+        for (std::size_t column = 0; column < columns.size(); ++column) row[column] = factor * inverses[column][e];
       }
     }
   });

@@ -17,8 +17,7 @@ namespace slipstick::solver {
 /// An index as a std::size_t.
 inline std::size_t count(Index n) { return static_cast<std::size_t>(n); }
 
-/// Complex lines of one plan. step: from one value of a line to the next; distance: from one line to the
-/// next.
+/// Complex lines of one plan. step: from one value of a line to the next; distance: from one line to the next.
 struct FftwLines {
   int length;
   int count;
@@ -32,8 +31,8 @@ inline fftw_plan plan_transform(int length, fftw_complex* in, fftw_complex* out,
   return fftw_plan_dft_1d(length, in, out, direction, FFTW_ESTIMATE);
 }
 inline fftw_plan plan_transforms(const FftwLines& lines, fftw_complex* in, fftw_complex* out, int direction) {
-  return fftw_plan_many_dft(1, &lines.length, lines.count, in, nullptr, lines.in_step, lines.in_distance, out,
-                            nullptr, lines.out_step, lines.out_distance, direction, FFTW_ESTIMATE);
+  return fftw_plan_many_dft(1, &lines.length, lines.count, in, nullptr, lines.in_step, lines.in_distance, out, nullptr,
+                            lines.out_step, lines.out_distance, direction, FFTW_ESTIMATE);
 }
 inline fftw_plan plan_row_forward(int length, double* in, fftw_complex* out) {
   return fftw_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, FFTW_ESTIMATE);

@@ -52,8 +52,7 @@ class PaddedTransform {
       auto* const start = scratch_.front().complex();
       return FftwPlan(plan_transform(static_cast<int>(length), start, start + out, direction));
     };
-    plans_ = {plan(axis2_.m, kRows * axis2_.stride, FFTW_FORWARD),
-              plan(axis2_.m, kRows * axis2_.stride, FFTW_BACKWARD),
+    plans_ = {plan(axis2_.m, kRows * axis2_.stride, FFTW_FORWARD), plan(axis2_.m, kRows * axis2_.stride, FFTW_BACKWARD),
               plan(axis1_.m, axis1_.stride, FFTW_FORWARD), plan(axis1_.m, axis1_.stride, FFTW_BACKWARD)};
   }
 
@@ -107,8 +106,7 @@ class PaddedTransform {
   /// column, one that is being turned, and on several ranks one that is being padded.
   Index scratch_size() const {
     const Index turned_and_padded = grid_.ranks.several() ? 2 : 1;
-    return std::max(2 * kRows * axis2_.stride,
-                    (2 * static_cast<Index>(fields_) + turned_and_padded) * axis1_.stride);
+    return std::max(2 * kRows * axis2_.stride, (2 * static_cast<Index>(fields_) + turned_and_padded) * axis1_.stride);
   }
 
   static Index half_length(Index cells) { return fast_length(2 * cells - 1) / 2; }
@@ -121,16 +119,14 @@ class PaddedTransform {
     return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
   }
 
-  /// Neighbouring columns lie pages apart, so that the processor does not prefetch them: columns to prefetch
-  /// ahead.
+  /// Neighbouring columns lie pages apart, so that the processor does not prefetch them: columns to prefetch ahead.
   static constexpr Index kAhead = 12;
 
   /// exp(-i pi j/m), 0 <= j < n.
   static std::vector<Complex> twiddles(Index n, Index m) {
     std::vector<Complex> result;
     for (Index j = 0; j < n; ++j) {
-      const auto factor =
-          std::polar(1.0, -std::numbers::pi * static_cast<double>(j) / static_cast<double>(m));
+      const auto factor = std::polar(1.0, -std::numbers::pi * static_cast<double>(j) / static_cast<double>(m));
       result.emplace_back(factor.real(), factor.imag());
     }
     return result;
@@ -309,8 +305,7 @@ class PaddedTransform {
     const Index evens = axis2_.m / 2 + 1;
     join_column(0, 0, 0, spectra);
     for (Index k = 1; k < evens; ++k) join_column(k, k, axis2_.m - k, spectra);
-    for (Index k = 0; evens + k < columns(); ++k)
-      join_column(evens + k, k, axis2_.m - 1 - k, spectra + axis2_.stride);
+    for (Index k = 0; evens + k < columns(); ++k) join_column(evens + k, k, axis2_.m - 1 - k, spectra + axis2_.stride);
   }
 
   void forward_column(int thread, std::size_t field, Index column_index) {

@@ -44,8 +44,7 @@ class PeriodicTransform {
     double* row(Index field, Index k) const { return start + field * field_stride + k * 2 * kColumns; }
   };
 
-  /// memory: for the plane, if it is large enough; aligned for FFTW, not owned, and overwritten by each
-  /// transform.
+  /// memory: for the plane, if it is large enough; aligned for FFTW, not owned, and overwritten by each transform.
   PeriodicTransform(const Shape& shape, int threads, std::span<double> memory = {})
       : shape_(shape),
         threads_(threads),

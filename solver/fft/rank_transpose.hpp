@@ -55,8 +55,7 @@ struct RankTranspose {
     if (!ranks.several()) return;
     const auto bytes = [](Index numbers) { return static_cast<std::size_t>(numbers) * sizeof(double); };
     ranks.communicator().transpose(
-        buffer, {rows, rows_of_rank, columns, columns_of_rank(), bytes(entry), bytes(row_step())},
-        to_columns);
+        buffer, {rows, rows_of_rank, columns, columns_of_rank(), bytes(entry), bytes(row_step())}, to_columns);
   }
 };
 

@@ -57,8 +57,7 @@ Index sides_of_edge(const Grid& grid, const Eigen::ArrayXd& inside) {
   for (Index i = 0; i <= grid.n1; ++i) {
     for (Index j = 0; j <= grid.n2; ++j) {
       const bool here = is_inside(i, j);
-      sides +=
-          static_cast<Index>(here != is_inside(i - 1, j)) + static_cast<Index>(here != is_inside(i, j - 1));
+      sides += static_cast<Index>(here != is_inside(i - 1, j)) + static_cast<Index>(here != is_inside(i, j - 1));
     }
   }
   return sides;

@@ -21,8 +21,7 @@ Weights overlaps(Index coarse, Index fine) {
     const double low = static_cast<double>(i) * ratio;
     const double high = static_cast<double>(i + 1) * ratio;
     for (auto j = static_cast<Index>(low); j < fine && static_cast<double>(j) < high; ++j) {
-      const double covered =
-          std::min(high, static_cast<double>(j + 1)) - std::max(low, static_cast<double>(j));
+      const double covered = std::min(high, static_cast<double>(j + 1)) - std::max(low, static_cast<double>(j));
       if (covered > 0.0) weights.insert(i, j) = covered / ratio;
     }
   }
@@ -47,9 +46,8 @@ Weights interpolation(Index fine, Index coarse, bool mirrored, int parity) {
   return weights;
 }
 
-/// Row i: the fractions of cell i of the row `to` that each cell of the row `from` covers; the outermost
-/// cells of `from` extend to infinity. ratio: cell size of `to` over that of `from`; shift: middle of `to`,
-/// in cells of `from`.
+/// Row i: the fractions of cell i of the row `to` that each cell of the row `from` covers; the outermost cells of
+/// `from` extend to infinity. ratio: cell size of `to` over that of `from`; shift: middle of `to`, in cells of `from`.
 Weights coverings(Index to, Index from, double ratio, double shift) {
   constexpr double kSamePlace = 1e-6;  // of a cell: positions that a file holds are rounded
   const auto place = [&](Index i) {
@@ -113,8 +111,7 @@ Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::Ar
   const Index components = field.size() / fine.cells();
   Eigen::ArrayXd result(components * coarse.cells());
   for (Index c = 0; c < components; ++c) {
-    result.segment(c * coarse.cells(), coarse.cells()) =
-        transform(along1, along2, field.data() + c * fine.cells());
+    result.segment(c * coarse.cells(), coarse.cells()) = transform(along1, along2, field.data() + c * fine.cells());
   }
   return result;
 }

@@ -18,8 +18,7 @@ bool can_coarsen(const Grid& grid);
 /// `parts` cells along each side of a cell.
 Grid divided(const Grid& grid, Index parts);
 
-/// The value of each coarse cell in all of its parts, on fine = divided(coarse, parts); one or several
-/// components.
+/// The value of each coarse cell in all of its parts, on fine = divided(coarse, parts); one or several components.
 Eigen::ArrayXd spread_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field);
 
 /// Mean over each coarse cell; one or several components.

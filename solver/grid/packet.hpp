@@ -63,12 +63,8 @@ struct Packet {
     return {__builtin_shufflevector(x, y, 0, 2), __builtin_shufflevector(x, y, 1, 3)};
   }
   /// x and y again.
-  static Vector real_part(const Halves& halves) {
-    return __builtin_shufflevector(halves.even, halves.odd, 0, 2);
-  }
-  static Vector imaginary_part(const Halves& halves) {
-    return __builtin_shufflevector(halves.even, halves.odd, 1, 3);
-  }
+  static Vector real_part(const Halves& halves) { return __builtin_shufflevector(halves.even, halves.odd, 0, 2); }
+  static Vector imaginary_part(const Halves& halves) { return __builtin_shufflevector(halves.even, halves.odd, 1, 3); }
 };
 
 /// sums[k] += w_k.r over n values, all k in one pass.

@@ -10,10 +10,9 @@
 
 namespace slipstick::solver {
 
-/// How fields are stored on a set of a grid's cells: the values of these cells only, one after the other,
-/// component by component. So a contact's fields take the memory of its cells, not of its grid. Operators
-/// work on one field of the whole grid, which all packed fields share. Fields of the grid need be known only
-/// in this rank's rows.
+/// How fields are stored on a set of a grid's cells: the values of these cells only, one after the other, component by
+/// component. So a contact's fields take the memory of its cells, not of its grid. Operators work on one field of the
+/// whole grid, which all packed fields share. Fields of the grid need be known only in this rank's rows.
 class Packing {
  public:
   Packing() = default;

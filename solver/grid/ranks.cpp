@@ -41,14 +41,13 @@ Communicator& Ranks::communicator() const {
 
 void Ranks::gather(std::span<double> field, Index rows, Index rows_of_rank) const {
   if (!several() || rows == 0) return;
-  communicator().gather(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
-                        rows_of_rank);
+  communicator().gather(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows, rows_of_rank);
 }
 
 void Ranks::gather_adjacent(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const {
   if (!several() || rows == 0) return;
-  communicator().gather_adjacent(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
-                                 rows_of_rank, depth);
+  communicator().gather_adjacent(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows, rows_of_rank,
+                                 depth);
 }
 
 void Ranks::gather_shares(void* things, std::size_t bytes, Index count) const {

@@ -33,8 +33,7 @@ class Ranks {
   /// One process.
   Ranks() = default;
   explicit Ranks(Communicator& communicator) : communicator_(&communicator) {}
-  /// Rank 0 of `number` ranks, for predictions: the others do not exist, so that any exchange throws
-  /// std::logic_error.
+  /// Rank 0 of `number` ranks, for predictions: the others do not exist, so that any exchange throws std::logic_error.
   static Ranks planned(int number) {
     Ranks ranks;
     ranks.planned_ = number;

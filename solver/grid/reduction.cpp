@@ -131,8 +131,7 @@ Eigen::ArrayXd restrict_to_quadrant(const Grid& whole, const Eigen::ArrayXd& fie
 Reduction::Reduction(const Grid& grid, const ArrayXd& contact)
     : whole_(grid), trimmed_(trimmed_grid(grid, contact)), grid_(trimmed_) {}
 
-Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& contact)
-    : Reduction(grid, contact) {
+Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& contact) : Reduction(grid, contact) {
   if (trimmed_.n1 % 2 != 0 || trimmed_.n2 % 2 != 0) return;  // an axis would cut cells in two
   const ArrayXd part = middle(whole_, trimmed_, shape);
   if (!is_mirrored(trimmed_, part)) return;
@@ -164,8 +163,8 @@ ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure 
 bool turns_into_itself(const ArrayXd& field) {
   const Index cells = field.size() / 2;
   const auto apart = [](const auto& component) { return (component + component.reverse()).abs().maxCoeff(); };
-  return cells == 0 || std::max(apart(field.head(cells)), apart(field.tail(cells))) <=
-                           kTransformRounding * field.abs().maxCoeff();
+  return cells == 0 ||
+         std::max(apart(field.head(cells)), apart(field.tail(cells))) <= kTransformRounding * field.abs().maxCoeff();
 }
 
 void turn_into_itself(ArrayXd& field) {

@@ -5,8 +5,7 @@
 
 #include "solver/grid/grid.hpp"
 
-/// Fields with two mirror axes on the quadrant x1, x2 > 0, and the part of a grid on which a contact is
-/// solved.
+/// Fields with two mirror axes on the quadrant x1, x2 > 0, and the part of a grid on which a contact is solved.
 namespace slipstick::solver {
 
 /// How a field continues across the mirror axes: the parity of each of its components.
@@ -23,9 +22,8 @@ Grid whole_grid(const Grid& quadrant);
 /// Throws std::invalid_argument for a quadrant, and for odd counts of cells: an axis would cut cells in two.
 Grid quadrant_of(const Grid& whole);
 
-/// A field on the quadrant and its mirror images, on whole_grid(quadrant): each component of n1 n2 values,
-/// one for each parity, becomes 4 n1 n2 values. Throws std::invalid_argument for another size, and as
-/// whole_grid.
+/// A field on the quadrant and its mirror images, on whole_grid(quadrant): each component of n1 n2 values, one for each
+/// parity, becomes 4 n1 n2 values. Throws std::invalid_argument for another size, and as whole_grid.
 Eigen::ArrayXd unfold(const Grid& quadrant, const Eigen::ArrayXd& field, const Symmetry& symmetry);
 
 /// The part of a field of any number of components that lies on quadrant_of(whole). Throws

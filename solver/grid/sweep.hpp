@@ -149,8 +149,7 @@ class Sweep {
     if (part == parts) return at(own_bands_.last);
     const auto first = bands_.begin() + own_bands_.first;
     const auto last = bands_.begin() + own_bands_.last;
-    return at(std::ranges::lower_bound(first, last, visited() * part / parts, {}, &Band::visited) -
-              bands_.begin());
+    return at(std::ranges::lower_bound(first, last, visited() * part / parts, {}, &Band::visited) - bands_.begin());
   }
 
   Index size_ = 0;
@@ -220,8 +219,7 @@ void Sweep::assign(const Contains& contains) {
 inline void Sweep::set_bands(Index cells_of_band) {
   band_count_ = std::max<Index>((size_ + cells_of_band - 1) / cells_of_band, 1);
   own_bands_ = ranks_.own_share(band_count_);
-  for (Index band = 0; band <= band_count_; ++band)
-    bands_[at(band)].cell = std::min(band * cells_of_band, size_);
+  for (Index band = 0; band <= band_count_; ++band) bands_[at(band)].cell = std::min(band * cells_of_band, size_);
 }
 
 inline Sweep Sweep::packed() const {

@@ -68,10 +68,10 @@ ThreadPool::ThreadPool(int threads) : ThreadPool() {
   try {
     while (available() < threads) others_.emplace_back([this] { work(); });
   } catch (const std::exception&) {
-    throw std::runtime_error(fmt::format(
-        "solver.threads = {}: allowed: up to {} here, where the limits of memory and processes let "
-        "no more start",
-        threads, available()));
+    throw std::runtime_error(
+        fmt::format("solver.threads = {}: allowed: up to {} here, where the limits of memory and processes let "
+                    "no more start",
+                    threads, available()));
   }
 }
 

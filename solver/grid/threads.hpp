@@ -46,9 +46,7 @@ class ThreadPool {
 /// do not either. In a pool, or with one thread, it allocates nothing. The work must not throw.
 template <typename Work>
 void in_parts(int threads, Index count, const Work& work) {
-  const auto part = [&](int thread) {
-    work(thread, count * thread / threads, count * (thread + 1) / threads);
-  };
+  const auto part = [&](int thread) { work(thread, count * thread / threads, count * (thread + 1) / threads); };
   if (threads <= 1) {
     work(0, Index(0), count);
     return;

@@ -59,8 +59,7 @@ void require_own_dataset(hid_t file, const std::string& name) {
 
 /// "GROUP/" of the one group that has all of these names; nothing where the root has the first.
 std::string find_group(hid_t file, const std::vector<std::string>& names) {
-  if (names[0].find('/') != std::string::npos || H5Lexists(file, names[0].c_str(), H5P_DEFAULT) > 0)
-    return "";
+  if (names[0].find('/') != std::string::npos || H5Lexists(file, names[0].c_str(), H5P_DEFAULT) > 0) return "";
   std::set<std::string> links;
   const auto add = [](hid_t, const char* name, const H5L_info_t*, void* to) {
     auto& found = *static_cast<std::set<std::string>*>(to);
@@ -75,11 +74,10 @@ std::string find_group(hid_t file, const std::vector<std::string>& names) {
     if (std::ranges::all_of(names, [&](const std::string& name) { return links.contains(group + name); }))
       groups.push_back(group);
   }
-  require(!groups.empty(),
-          fmt::format("no such dataset; the file has: {}; check takes other paths by --columns",
-                      shown(fmt::format("{}", fmt::join(links, ", ")))));
-  require(groups.size() == 1, fmt::format("several groups have one: {}; allowed: --columns with the paths",
-                                          fmt::join(groups, ", ")));
+  require(!groups.empty(), fmt::format("no such dataset; the file has: {}; check takes other paths by --columns",
+                                       shown(fmt::format("{}", fmt::join(links, ", ")))));
+  require(groups.size() == 1,
+          fmt::format("several groups have one: {}; allowed: --columns with the paths", fmt::join(groups, ", ")));
   return groups[0];
 }
 
@@ -182,9 +180,8 @@ off_t add_dataset(hid_t file, const DatasetLayout& layout) {
   H5Pset_obj_track_times(creation.get(), false);  // the same numbers, the same bytes
   H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
-  const Id dataset(
-      H5Dcreate2(file, layout.name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-      H5Dclose, kNotLaidOut);
+  const Id dataset(H5Dcreate2(file, layout.name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                   H5Dclose, kNotLaidOut);
   return layout.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset.get())) : 0;
 }
 

@@ -39,8 +39,7 @@ struct OpenHistory {
   Quantities mesh() const;
 };
 
-/// The state of a history at the end of a step. From it the next step gives the same digits as without a
-/// break.
+/// The state of a history at the end of a step. From it the next step gives the same digits as without a break.
 struct HistoryState {
   std::size_t finished = 0;  ///< number of finished steps, in all cycles
   ContactState contact;

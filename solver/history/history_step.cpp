@@ -62,8 +62,7 @@ Step interpolate_loads(const Step& step, const StepEnd& before, double part) {
 
 }  // namespace
 
-std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous,
-                           const StepEnd& before) {
+std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before) {
   const int parts = scene.solver.substeps;
   const bool presses = previous != nullptr && previous->normal && previous->normal != step.normal;
   const int pressing = presses ? parts / 2 : 0;

@@ -42,8 +42,7 @@ std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* pre
 HistoryStep solve_history_step(const Scene& scene, const Model& model, HistoryState before, Detail detail,
                                const Progress& progress = {});
 
-/// The answer to a step of a scene in SI units. Where a part broke off, numbers at the end of the step are
-/// NaN.
+/// The answer to a step of a scene in SI units. Where a part broke off, numbers at the end of the step are NaN.
 Solution to_si(HistoryStep step, const Scene& scene, const Model& model);
 
 }  // namespace slipstick::solver

@@ -40,8 +40,7 @@ void require_name(std::FILE* file, const fs::path& name) {
   if (stat(name.c_str(), &named) != 0 || named.st_ino != open_one.st_ino) fail(ENOENT);
 }
 
-/// Allocates the space for names first: HDF5 keeps data that it could not write and crashes when the process
-/// ends.
+/// Allocates the space for names first: HDF5 keeps data that it could not write and crashes when the process ends.
 Offsets lay_out(std::FILE* file, const fs::path& name, const std::vector<LongDataset>& contents) {
   require_name(file, name);
   const std::string room(kNames, '\0');
@@ -133,14 +132,13 @@ const Hdf5Library& hdf5_library(const std::filesystem::path& file) {
   }
 }
 
-std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names,
-                                   int rank, Eigen::Index most) {
+std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names, int rank,
+                                   Eigen::Index most) {
   require_input_file(file, kLargestHdf5, "an HDF5 file");
   return hdf5_library(file).read(file, names, rank, most);
 }
 
-void write_datasets(const fs::path& file, const std::vector<Column>& columns,
-                    const std::vector<NamedText>& texts) {
+void write_datasets(const fs::path& file, const std::vector<Column>& columns, const std::vector<NamedText>& texts) {
   std::vector<LongDataset> datasets;
   const auto add = [&](const DatasetLayout& layout, const void* values) {
     const std::size_t bytes = layout.size * layout.bytes_of_value();

@@ -23,8 +23,8 @@ inline constexpr int kTableRank = 0;
 /// or kTableRank) dimensions, at least one value and at most `most`; one dimension makes one column. Throws
 /// InputError with the file and the dataset. A file that crashes the HDF5 library ends the process: the
 /// message names the file, and the exit code is 2.
-std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names,
-                                   int rank, Index most);
+std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names, int rank,
+                                   Index most);
 
 /// A 1-D dataset of doubles or of bytes.
 struct DatasetLayout {
@@ -34,8 +34,7 @@ struct DatasetLayout {
   std::size_t bytes_of_value() const { return is_text ? 1 : sizeof(double); }
 };
 
-/// A dataset that is worked out when it is written: write() puts the bytes of this rank's part, piece by
-/// piece.
+/// A dataset that is worked out when it is written: write() puts the bytes of this rank's part, piece by piece.
 using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
 struct LongDataset {
   DatasetLayout layout;
@@ -49,9 +48,8 @@ struct NamedText {
   std::string text;
 };
 
-/// Writes an HDF5 file of 1-D datasets, each of its own length: numbers, and texts as their bytes. It is
-/// written as write_whole_file() does, and the same content gives the same bytes. Throws InputError where it
-/// cannot be written.
+/// Writes an HDF5 file of 1-D datasets, each of its own length: numbers, and texts as their bytes. It is written as
+/// write_whole_file() does, and the same content gives the same bytes. Throws InputError where it cannot be written.
 void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts = {});
 /// All ranks call it and write their parts into one file on a shared file system. If any rank cannot write,
@@ -64,8 +62,7 @@ struct Hdf5Library {
   /// As solver::read_datasets().
   decltype(read_datasets)* read;
   /// Makes a file without values; returns the offset of each dataset's values. Throws std::runtime_error.
-  std::vector<off_t> (*lay_out)(const std::filesystem::path& file,
-                                const std::vector<DatasetLayout>& datasets);
+  std::vector<off_t> (*lay_out)(const std::filesystem::path& file, const std::vector<DatasetLayout>& datasets);
 };
 
 /// Loaded by the first call. Throws InputError, which names `file`, if it cannot be loaded.

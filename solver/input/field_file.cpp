@@ -34,16 +34,15 @@ constexpr Index kMaxHeights = Index{1} << 26;
 void require_numbers(const path& file, const std::vector<Column>& columns, bool may_be_missing) {
   for (const Column& column : columns) {
     if (column.values.size() != columns.front().values.size()) {
-      throw InputError(file.string(), fmt::format("dataset {} has {} values; allowed: {}, as {}", column.name,
-                                                  column.values.size(), columns.front().values.size(),
-                                                  columns.front().name));
+      throw InputError(file.string(),
+                       fmt::format("dataset {} has {} values; allowed: {}, as {}", column.name, column.values.size(),
+                                   columns.front().values.size(), columns.front().name));
     }
-    const auto bad = std::ranges::find_if_not(column.values, [&](double value) {
-      return std::isfinite(value) || (may_be_missing && std::isnan(value));
-    });
+    const auto bad = std::ranges::find_if_not(
+        column.values, [&](double value) { return std::isfinite(value) || (may_be_missing && std::isnan(value)); });
     if (bad != column.values.end()) {
-      throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number",
-                                                  column.name, bad - column.values.begin() + 1, *bad));
+      throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", column.name,
+                                                  bad - column.values.begin() + 1, *bad));
     }
   }
 }
@@ -55,9 +54,9 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
   for (std::size_t c = 0; c < names.size(); ++c) {
     const Dataset& values = datasets[c];
     if (values.size() == datasets[0].size() && values.rows() != datasets[0].rows()) {
-      throw InputError(file.string(), fmt::format("dataset {} has {} x {} values; allowed: {} x {}, as {}",
-                                                  stored[c], values.rows(), values.cols(), datasets[0].rows(),
-                                                  datasets[0].cols(), stored[0]));
+      throw InputError(file.string(),
+                       fmt::format("dataset {} has {} x {} values; allowed: {} x {}, as {}", stored[c], values.rows(),
+                                   values.cols(), datasets[0].rows(), datasets[0].cols(), stored[0]));
     }
     columns.push_back({names[c], values.reshaped<Eigen::RowMajor>()});
   }
@@ -75,10 +74,9 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
     const auto end = std::min(text.find('>', at), text.size());
     if (at == std::string::npos || begin == std::string::npos ||
         text.substr(begin, end - begin).find("format=\"ascii\"") == std::string::npos) {
-      throw InputError(file.string(),
-                       fmt::format("has no array {} with format=\"ascii\"; allowed: one, as --fields "
-                                   "FILE.vti writes it, or the cells as CSV",
-                                   stored[c]));
+      throw InputError(file.string(), fmt::format("has no array {} with format=\"ascii\"; allowed: one, as --fields "
+                                                  "FILE.vti writes it, or the cells as CSV",
+                                                  stored[c]));
     }
     std::vector<double> values;
     const char* next = text.c_str() + std::min(end + 1, text.size());
@@ -89,8 +87,8 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
     }
     next += std::strspn(next, " \t\r\n");
     if (*next != '<') {
-      throw InputError(file.string(), fmt::format("array {}, value {}; allowed: a number, at most {}",
-                                                  stored[c], values.size() + 1, kMaxRows));
+      throw InputError(file.string(), fmt::format("array {}, value {}; allowed: a number, at most {}", stored[c],
+                                                  values.size() + 1, kMaxRows));
     }
     columns.push_back({names[c], ArrayXd::Map(values.data(), static_cast<Index>(values.size()))});
   }
@@ -99,8 +97,7 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
 
 /// Numbers that a cell repeats, from the cell before or from another column, are put into digits once: 17,
 /// which are read as the same double.
-void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns,
-               const ArrayXd& keep) {
+void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns, const ArrayXd& keep) {
   std::vector<std::string> names;
   names.reserve(columns.size());
   for (const FieldColumn& column : columns) names.push_back(column.name);
@@ -125,8 +122,7 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
           if (same != end) {
             digits[c] = *same;
           } else {
-            const auto last =
-                std::to_chars(buffer.begin(), buffer.end(), value, std::chars_format::general, 17);
+            const auto last = std::to_chars(buffer.begin(), buffer.end(), value, std::chars_format::general, 17);
             digits[c] = {bits, std::string(buffer.data(), last.ptr)};
           }
         }
@@ -160,8 +156,7 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
 }
 
 /// Each process writes the kept part of its own rows, in the order of the ranks.
-void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
-                const ArrayXd& keep) {
+void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns, const ArrayXd& keep) {
   const IndexRange rows = own_rows(grid);
   const Index first = rows.first * grid.n2;
   const auto own = static_cast<double>((keep.segment(first, rows.count() * grid.n2) != 0.0).count());
@@ -191,8 +186,7 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
 
 }  // namespace
 
-std::vector<Column> read_columns(const path& file, const std::vector<std::string>& names,
-                                 const TableOptions& options) {
+std::vector<Column> read_columns(const path& file, const std::vector<std::string>& names, const TableOptions& options) {
   const bool is_vti = file.extension() == ".vti";
   if (file.extension() == ".npz" || file.extension() == ".npy") {
     throw InputError(file.string(),
@@ -207,8 +201,7 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
                                               options.columns.size(), names.size(), fmt::join(names, ", ")));
   }
   const std::vector<std::string>& stored = options.columns.empty() ? names : options.columns;
-  std::vector<Column> columns =
-      is_vti ? read_vti_columns(file, names, stored) : read_hdf5_columns(file, names, stored);
+  std::vector<Column> columns = is_vti ? read_vti_columns(file, names, stored) : read_hdf5_columns(file, names, stored);
   require_numbers(file, columns, options.may_be_missing);
   return columns;
 }
@@ -228,8 +221,7 @@ std::vector<Index> cells_of_rows(const path& file, const Grid& grid, const std::
     const double i = place(x1[row], grid.h1, grid.n1);
     const double j = place(x2[row], grid.h2, grid.n2);
     const auto fail = [&](const std::string& complaint) {
-      throw InputError(file.string(),
-                       fmt::format("row {}: ({}, {}) {}", row + 1, x1[row], x2[row], complaint));
+      throw InputError(file.string(), fmt::format("row {}: ({}, {}) {}", row + 1, x1[row], x2[row], complaint));
     };
     if (!is_one(i, grid.n1) || !is_one(j, grid.n2)) {
       fail(
@@ -267,8 +259,7 @@ std::string fields_ending() {
   }
 }
 
-void write_fields(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
-                  const ArrayXd& keep) {
+void write_fields(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns, const ArrayXd& keep) {
   require_field_format(file);
   if (is_hdf5(file)) {
     write_hdf5(file, grid, columns, keep);
@@ -281,8 +272,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<FieldCol
   }
 }
 
-void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
-                  const ArrayXd& keep) {
+void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns, const ArrayXd& keep) {
   std::vector<FieldColumn> from_kept;
   from_kept.reserve(columns.size());
   for (const Column& column : columns) {

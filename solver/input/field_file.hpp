@@ -33,12 +33,11 @@ struct TableOptions {
   bool may_be_missing = false;  ///< NaN and empty cells are NaN; they are refused otherwise
 };
 
-/// Reads columns by name. The ending .h5 or .hdf5 is HDF5 (1-D or 2-D datasets of equal shape, in the root or
-/// the one group that has them all), .vti VTK image data as write_fields() writes it; others are text: a line
-/// of names in any case, perhaps as a comment (#, %) and with units ("x1 [mm]": the values are returned in SI
-/// units), then a row a cell, with commas, semicolons, tabs or blanks between columns and decimal points or
-/// commas. Throws InputError for a file that cannot be read, a missing column, and a value that is not a
-/// finite number (with its row).
+/// Reads columns by name. The ending .h5 or .hdf5 is HDF5 (1-D or 2-D datasets of equal shape, in the root or the one
+/// group that has them all), .vti VTK image data as write_fields() writes it; others are text: a line of names in any
+/// case, perhaps as a comment (#, %) and with units ("x1 [mm]": the values are returned in SI units), then a row a
+/// cell, with commas, semicolons, tabs or blanks between columns and decimal points or commas. Throws InputError for a
+/// file that cannot be read, a missing column, and a value that is not a finite number (with its row).
 std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names,
                                  const TableOptions& options = {});
 
@@ -59,13 +58,12 @@ void require_field_format(const std::filesystem::path& file, const std::string& 
 /// library is not installed.
 std::string fields_ending();
 
-/// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
-/// image data, for ParaView) gets all cells. The file is the old one or the whole new one, and the same
-/// numbers give the same bytes. Memory holds a row of one column for .h5, a row for .csv and a column for
-/// .vti. All processes of the grid call it: into .h5 each writes its own rows, other files the first one
-/// writes. Throws InputError if it cannot write.
-void write_fields(const std::filesystem::path& file, const Grid& grid,
-                  const std::vector<FieldColumn>& columns, const Eigen::ArrayXd& keep);
+/// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK image data,
+/// for ParaView) gets all cells. The file is the old one or the whole new one, and the same numbers give the same
+/// bytes. Memory holds a row of one column for .h5, a row for .csv and a column for .vti. All processes of the grid
+/// call it: into .h5 each writes its own rows, other files the first one writes. Throws InputError if it cannot write.
+void write_fields(const std::filesystem::path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
+                  const Eigen::ArrayXd& keep);
 /// Columns that are kept.
 void write_fields(const std::filesystem::path& file, const Grid& grid, const std::vector<Column>& columns,
                   const Eigen::ArrayXd& keep);

@@ -12,8 +12,7 @@ inline constexpr std::size_t kMaxShown = 200;
 /// An error of the caller's input: file, key, value and allowed values.
 class InputError : public std::invalid_argument {
  public:
-  InputError(const std::string& file, const std::string& key, const std::string& value,
-             const std::string& allowed);
+  InputError(const std::string& file, const std::string& key, const std::string& value, const std::string& allowed);
   /// A complaint about a file as a whole.
   InputError(const std::string& file, const std::string& complaint);
 };

@@ -59,8 +59,8 @@ class InputFile {
     throw InputError(file_.string(), fmt::format("cannot be read: {}; allowed: {}", reason, allowed_));
   }
   [[noreturn]] void fail_for_size() const {
-    throw InputError(file_.string(), fmt::format("is larger than {} MiB; allowed: {} of at most that size",
-                                                 largest_ >> 20, allowed_));
+    throw InputError(file_.string(),
+                     fmt::format("is larger than {} MiB; allowed: {} of at most that size", largest_ >> 20, allowed_));
   }
 
   const std::filesystem::path& file_;
@@ -71,13 +71,11 @@ class InputFile {
 
 }  // namespace
 
-void require_input_file(const std::filesystem::path& file, std::uintmax_t largest,
-                        const std::string& allowed) {
+void require_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
   InputFile(file, largest, allowed).require_regular();
 }
 
-std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest,
-                            const std::string& allowed) {
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
   const InputFile input(file, largest, allowed);
   input.require_regular();
   return input.read();
@@ -85,8 +83,7 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
 
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
   std::error_code error;
-  const auto way =
-      std::filesystem::relative(std::filesystem::absolute(file), std::filesystem::absolute(folder), error);
+  const auto way = std::filesystem::relative(std::filesystem::absolute(file), std::filesystem::absolute(folder), error);
   return !error && !way.empty() && *way.begin() != "..";
 }
 
@@ -105,8 +102,7 @@ std::pair<unsigned, std::size_t> steering(std::string_view text) {
   if (c == 0xc2 && between(0x80, two, 0x9f)) return {two, 2};
   if (c == 0xd8 && two == 0x61c) return {two, 2};
   const unsigned three = (c & 0xfU) << 12U | (byte(1) & 0x3fU) << 6U | (byte(2) & 0x3fU);
-  const bool turns =
-      between(0x200e, three, 0x200f) || between(0x2028, three, 0x202e) || between(0x2066, three, 0x2069);
+  const bool turns = between(0x200e, three, 0x200f) || between(0x2028, three, 0x202e) || between(0x2066, three, 0x2069);
   if (c == 0xe2 && byte(2) != 0 && turns) return {three, 3};
   return {0, 0};
 }
@@ -120,8 +116,7 @@ std::string printable(std::string_view text) {
     if (bytes == 0) {
       printable += text[i];
     } else {
-      printable +=
-          character < 0x100 ? fmt::format("\\x{:02x}", character) : fmt::format("\\u{:04x}", character);
+      printable += character < 0x100 ? fmt::format("\\x{:02x}", character) : fmt::format("\\u{:04x}", character);
     }
     i += std::max<std::size_t>(1, bytes);
   }
@@ -157,11 +152,10 @@ std::string cut(const std::string& text, std::size_t most) {
 InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
                        const std::string& allowed)
     : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", printable(cut(file, kMaxComplaint)),
-                                        printable(cut(key, kMaxShown)), printable(cut(value, kMaxShown)),
-                                        allowed)) {}
+                                        printable(cut(key, kMaxShown)), printable(cut(value, kMaxShown)), allowed)) {}
 
 InputError::InputError(const std::string& file, const std::string& complaint)
-    : std::invalid_argument(fmt::format("{}: {}", printable(cut(file, kMaxComplaint)),
-                                        printable(cut(complaint, kMaxComplaint)))) {}
+    : std::invalid_argument(
+          fmt::format("{}: {}", printable(cut(file, kMaxComplaint)), printable(cut(complaint, kMaxComplaint)))) {}
 
 }  // namespace slipstick::solver

@@ -47,8 +47,7 @@ std::ptrdiff_t line_of_long_key(const std::string& text) {
     if (c == '=') tables.back().key = parts;
     if (c == '{') tables.push_back({.around = tables.back().around + tables.back().key});
     if (c == '}' && tables.size() > 1) tables.pop_back();
-    const bool in_key =
-        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
+    const bool in_key = std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
     if (!in_key) parts = 1;
     if (tables.back().around + parts > kMaxKeyParts) {
       return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');

@@ -93,8 +93,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   const std::string compared = word.substr(0, kMaxCompared);
-  const auto nearest = std::ranges::min_element(
-      known, {}, [&](const std::string& each) { return edit_distance(compared, each); });
+  const auto nearest =
+      std::ranges::min_element(known, {}, [&](const std::string& each) { return edit_distance(compared, each); });
   return nearest == known.end() ? "" : *nearest;
 }
 
@@ -102,8 +102,7 @@ std::string nearest_key(const std::string& unknown, const std::vector<std::strin
   std::istringstream parts(unknown.substr(0, kMaxCompared));
   std::string meant;
   std::string part;
-  while (std::getline(parts, part, '.'))
-    meant += (meant.empty() ? "" : ".") + meant_by(without_indices(part));
+  while (std::getline(parts, part, '.')) meant += (meant.empty() ? "" : ".") + meant_by(without_indices(part));
   const auto nearest = std::ranges::min_element(known, {}, [&](const std::string& each) {
     const bool elsewhere = !meant.starts_with(each.substr(0, last_part(each)));
     return std::tuple(key_distance(meant, each), elsewhere, edit_distance(meant, each));
@@ -113,15 +112,13 @@ std::string nearest_key(const std::string& unknown, const std::vector<std::strin
   const std::string_view note = on_top ? "above all tables" : note_on(without_indices(part));
   // The indices of the tables in which both are.
   std::string indexed = *nearest;
-  for (std::size_t dot = unknown.rfind('.'); dot != std::string::npos && dot > 0;
-       dot = unknown.rfind('.', dot - 1)) {
+  for (std::size_t dot = unknown.rfind('.'); dot != std::string::npos && dot > 0; dot = unknown.rfind('.', dot - 1)) {
     const std::string table = without_indices(unknown.substr(0, dot));
     if (!nearest->starts_with(table + ".")) continue;
     indexed.replace(0, table.size(), unknown, 0, dot);
     break;
   }
-  return fmt::format("the nearest known one is {}{}", indexed,
-                     note.empty() ? "" : fmt::format(" ({})", note));
+  return fmt::format("the nearest known one is {}{}", indexed, note.empty() ? "" : fmt::format(" ({})", note));
 }
 
 }  // namespace slipstick::solver

@@ -29,8 +29,7 @@ struct Range {
 };
 
 inline const Range kPositive{"positive and finite", [](double x) { return x > 0.0 && std::isfinite(x); }};
-inline const Range kNotNegative{"zero or positive, finite",
-                                [](double x) { return x >= 0.0 && std::isfinite(x); }};
+inline const Range kNotNegative{"zero or positive, finite", [](double x) { return x >= 0.0 && std::isfinite(x); }};
 inline const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
 /// Whole numbers from low to high.
 Range whole(double low, double high);

@@ -54,8 +54,7 @@ struct Heading {
 
 Heading heading_of(std::string_view text) {
   const auto open = text.find_first_of("[(");
-  if (open == std::string_view::npos || open == 0 || (text.back() != ']' && text.back() != ')'))
-    return {text, ""};
+  if (open == std::string_view::npos || open == 0 || (text.back() != ']' && text.back() != ')')) return {text, ""};
   return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2))};
 }
 
@@ -64,9 +63,8 @@ class TextTable {
  public:
   explicit TextTable(const path& file)
       : file_(file),
-        text_(read_input_file(
-            file, kLargestTextTable,
-            "a table as text (CSV), VTK image data named .vti, or an HDF5 file named .h5 or .hdf5")) {
+        text_(read_input_file(file, kLargestTextTable,
+                              "a table as text (CSV), VTK image data named .vti, or an HDF5 file named .h5 or .hdf5")) {
     if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
   }
 
@@ -94,8 +92,7 @@ class TextTable {
 
   static bool has_number(const std::vector<Heading>& headings) {
     return std::ranges::any_of(headings, [](const Heading& heading) {
-      return !heading.name.empty() &&
-             std::string_view("+-.0123456789").find(heading.name[0]) != std::string_view::npos;
+      return !heading.name.empty() && std::string_view("+-.0123456789").find(heading.name[0]) != std::string_view::npos;
     });
   }
 
@@ -244,8 +241,7 @@ int power_of(const path& file, const Heading& heading) {
 /// The place of a name in a header.
 std::size_t find_column(const path& file, const std::string& name, const std::vector<Heading>& header) {
   const std::vector<std::size_t> found = TextTable::places(header, name);
-  if (found.size() > 1)
-    throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));
+  if (found.size() > 1) throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));
   if (found.size() == 1) return found[0];
   if (TextTable::has_number(header)) {
     throw InputError(file.string(),
@@ -254,10 +250,9 @@ std::size_t find_column(const path& file, const std::string& name, const std::ve
   }
   std::vector<std::string_view> there;
   for (const Heading& heading : header) there.push_back(heading.name);
-  throw InputError(
-      file.string(),
-      fmt::format("has no column {}; its columns: {}", name,
-                  there.empty() ? "none, it is empty" : shown(fmt::format("{}", fmt::join(there, ", ")))));
+  throw InputError(file.string(),
+                   fmt::format("has no column {}; its columns: {}", name,
+                               there.empty() ? "none, it is empty" : shown(fmt::format("{}", fmt::join(there, ", ")))));
 }
 
 }  // namespace
@@ -289,11 +284,10 @@ std::vector<Column> read_text_columns(const path& file, const std::vector<std::s
     const std::vector<std::string_view>& row = table.next_row(header.size(), places);
     if (row.empty()) break;
     if (row.size() != header.size()) {
-      table.fail(fmt::format("{} values; allowed: {}, one a column ({})", row.size(), header.size(),
-                             kSeparatorsInWords));
+      table.fail(
+          fmt::format("{} values; allowed: {}, one a column ({})", row.size(), header.size(), kSeparatorsInWords));
     }
-    if (static_cast<Index>(values[0].size()) == kMaxRows)
-      table.fail(fmt::format("more than {} rows", kMaxRows));
+    if (static_cast<Index>(values[0].size()) == kMaxRows) table.fail(fmt::format("more than {} rows", kMaxRows));
     for (std::size_t c = 0; c < names.size(); ++c) {
       values[c].push_back(table.number(row[places[c]], powers[c], options.may_be_missing));
     }
@@ -301,8 +295,7 @@ std::vector<Column> read_text_columns(const path& file, const std::vector<std::s
   if (values[0].empty()) throw InputError(file.string(), "holds no rows of numbers");
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    columns.push_back(
-        {names[c], Eigen::ArrayXd::Map(values[c].data(), static_cast<Index>(values[c].size()))});
+    columns.push_back({names[c], Eigen::ArrayXd::Map(values[c].data(), static_cast<Index>(values[c].size()))});
   }
   return columns;
 }

@@ -12,8 +12,8 @@ namespace slipstick::solver {
 std::vector<std::string> text_table_names(const std::filesystem::path& file);
 
 /// Columns of a table that is text, in SI units where its header says units, as read_columns().
-std::vector<Column> read_text_columns(const std::filesystem::path& file,
-                                      const std::vector<std::string>& names, const TableOptions& options);
+std::vector<Column> read_text_columns(const std::filesystem::path& file, const std::vector<std::string>& names,
+                                      const TableOptions& options);
 
 /// A table without a header, as read_matrix().
 Eigen::ArrayXXd read_text_matrix(const std::filesystem::path& file, Index max_values);

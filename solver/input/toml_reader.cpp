@@ -60,15 +60,12 @@ std::string with_point(const toml::node& node, const std::string& allowed) {
   const std::string text = fmt::format(" {} ", node.value_or(std::string()));
   const auto is_digit = [&](std::size_t at) { return text[at] >= '0' && text[at] <= '9'; };
   for (std::size_t at = 1; (at = text.find('.', at)) != std::string::npos; ++at) {
-    if (is_digit(at - 1) != is_digit(at + 1))
-      return allowed + "; TOML has a digit on both sides of a point, 0.5";
+    if (is_digit(at - 1) != is_digit(at + 1)) return allowed + "; TOML has a digit on both sides of a point, 0.5";
   }
   return allowed;
 }
 
-bool is_array_of_tables(const toml::node& node) {
-  return node.is_array() && node.is_homogeneous<toml::table>();
-}
+bool is_array_of_tables(const toml::node& node) { return node.is_array() && node.is_homogeneous<toml::table>(); }
 
 /// A value of a table, and its dotted path.
 struct Leaf {
@@ -76,10 +73,8 @@ struct Leaf {
   const toml::node* value;
 };
 
-/// Collects all leaves of a table. into_arrays: also the leaves of tables in arrays; otherwise such an array
-/// is a leaf.
-void collect_leaves(const toml::table& table, const std::string& prefix, bool into_arrays,
-                    std::vector<Leaf>& leaves) {
+/// Collects all leaves of a table. into_arrays: also the leaves of tables in arrays; otherwise such an array is a leaf.
+void collect_leaves(const toml::table& table, const std::string& prefix, bool into_arrays, std::vector<Leaf>& leaves) {
   for (const auto& [name, child] : table) {
     const std::string key = prefix + std::string(name.str());
     if (const toml::table* const inner = child.as_table()) {
@@ -121,8 +116,7 @@ struct SceneReader::ReadKeys {
     const std::string unit = found == keys.end() ? "" : found->second.unit;
     if (const auto* const text = node.as_string()) return units.read(text->get(), unit);
     const auto value = number_of(node);
-    const auto* const power =
-        std::ranges::find(kLengthPowers, unit, &std::pair<std::string_view, int>::first);
+    const auto* const power = std::ranges::find(kLengthPowers, unit, &std::pair<std::string_view, int>::first);
     if (!value || length_power == 0 || power == std::end(kLengthPowers)) return value;
     return parse_number(fmt::format("{}", *value), length_power * power->second);
   }
@@ -131,8 +125,7 @@ struct SceneReader::ReadKeys {
     const auto found = keys.find(without_indices(key));
     const std::string words = found == keys.end() ? "" : Units::list(found->second.unit);
     const bool has_units = node.is_string() && !words.empty();
-    return with_point(node,
-                      has_units ? fmt::format("{}; or a text with a unit, {}", allowed, words) : allowed);
+    return with_point(node, has_units ? fmt::format("{}; or a text with a unit, {}", allowed, words) : allowed);
   }
 
   const SettingKey& setting(const std::string& key) const {
@@ -211,10 +204,9 @@ void SceneReader::apply_override(const std::string& assignment) {
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     table = table_below(*table, parts[i]);
     if (table == nullptr) {
-      throw InputError(
-          source,
-          fmt::format("{} is not a table{}", parts[i],
-                      parts[i].ends_with(']') ? " of the scene file, where they are counted from 0" : ""));
+      throw InputError(source,
+                       fmt::format("{} is not a table{}", parts[i],
+                                   parts[i].ends_with(']') ? " of the scene file, where they are counted from 0" : ""));
     }
   }
   table->insert_or_assign(parts.back(), *parsed.get("value"));
@@ -249,8 +241,7 @@ void SceneReader::fail(const std::string& key, const std::string& value, const s
 void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
   const std::string parent = key.substr(0, key.rfind('.'));
   const auto found = toml_->root.at_path(parent);
-  if (found && !found.is_table())
-    fail(parent, print(*found.node()), fmt::format("a table with the key {}", key));
+  if (found && !found.is_table()) fail(parent, print(*found.node()), fmt::format("a table with the key {}", key));
   fail(key, "(missing)", allowed);
 }
 
@@ -272,8 +263,8 @@ void SceneReader::refuse_unless(const std::function<bool(const std::string& key)
   std::vector<std::string> complaints;
   for (const Leaf& leaf : unknown | std::views::take(kMostListed)) {
     const std::string place = complaints.empty() ? "" : where(leaf.key) + ": ";
-    complaints.push_back(fmt::format("{}{} = {}: {}", place, leaf.key,
-                                     print(*leaf.value).substr(0, kMaxShown), why_unknown(leaf.key)));
+    complaints.push_back(
+        fmt::format("{}{} = {}: {}", place, leaf.key, print(*leaf.value).substr(0, kMaxShown), why_unknown(leaf.key)));
   }
   if (unknown.size() > kMostListed)
     complaints.push_back(fmt::format("and {} more unknown keys", unknown.size() - kMostListed));
@@ -327,8 +318,7 @@ std::optional<double> SceneReader::find_number(const std::string& key, const Ran
   if (!found) return std::nullopt;
   const auto value = toml_->number(*found.node(), key);
   if (!value) {
-    fail(key, print(*found.node()),
-         toml_->for_number(*found.node(), key, fmt::format("a number, {}", allowed.words)));
+    fail(key, print(*found.node()), toml_->for_number(*found.node(), key, fmt::format("a number, {}", allowed.words)));
   }
   if (!allowed.contains(*value)) fail(key, print(*found.node()), allowed.words);
   return value;
@@ -379,8 +369,7 @@ std::vector<std::string> SceneReader::list(const std::string& key) {
   const auto found = toml_->node(key);
   if (!found) return {};
   const toml::array* const array = found.as_array();
-  if (array == nullptr || array->empty())
-    fail(key, print(*found.node()), "a list, [a, b, ...], of at least one");
+  if (array == nullptr || array->empty()) fail(key, print(*found.node()), "a list, [a, b, ...], of at least one");
   std::vector<std::string> elements;
   for (const toml::node& element : *array) elements.push_back(print(element));
   return elements;

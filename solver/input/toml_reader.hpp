@@ -23,16 +23,14 @@ struct SettingsText {
 SettingsText settings_of(const std::filesystem::path& file);
 
 /// Reads the keys of a TOML file one by one, by dotted path; an index picks one of an array of tables, as in
-/// step[1].twist. The table of all keys has the allowed values; where these depend on other keys, the caller
-/// gives them. The constructor reports the keys that the table does not have, reject_unknown() those that
-/// were not read. Throws InputError, and std::logic_error for a key that the table does not have, unless the
-/// table is empty.
+/// step[1].twist. The table of all keys has the allowed values; where these depend on other keys, the caller gives
+/// them. The constructor reports the keys that the table does not have, reject_unknown() those that were not read.
+/// Throws InputError, and std::logic_error for a key that the table does not have, unless the table is empty.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
               const SettingKeys& keys = {});
-  SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
-              const SettingKeys& keys = {});
+  SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides, const SettingKeys& keys = {});
 
   /// Numbers without a unit are in a consistent set of units from now on: 10^length_power m, and N. A text
   /// such as "10 mm" names its own unit.
@@ -42,8 +40,7 @@ class SceneReader {
   /// The units of the numbers that were read.
   const Units& units() const;
 
-  /// If the command line sets one of several mutually exclusive keys, the file's other keys of that group are
-  /// dropped.
+  /// If the command line sets one of several mutually exclusive keys, the file's other keys of that group are dropped.
   void prefer_overridden(const std::vector<std::string>& alternatives);
 
   bool has(const std::string& key);

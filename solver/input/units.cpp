@@ -77,8 +77,7 @@ std::string Units::list(std::string_view si) {
   std::string list;
   for (const Unit& unit : kUnits) {
     const bool plain = std::ranges::all_of(unit.word, [](char c) { return c >= ' '; });
-    if (unit.si == si && !si.empty() && plain)
-      list += fmt::format("{}{}", list.empty() ? "" : ", ", unit.word);
+    if (unit.si == si && !si.empty() && plain) list += fmt::format("{}{}", list.empty() ? "" : ", ", unit.word);
   }
   return si == "rad" ? fmt::format("{}, {}", list, kDegrees) : list;
 }

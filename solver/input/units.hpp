@@ -16,14 +16,12 @@ struct Unit {
   int power;
 };
 inline constexpr std::array<Unit, 29> kUnits{
-    {{"m", "m", 0},          {"cm", "m", -2},        {"mm", "m", -3},     {"um", "m", -6},
-     {"\xC2\xB5m", "m", -6}, {"\xCE\xBCm", "m", -6}, {"nm", "m", -9},     {"Pa", "Pa", 0},
-     {"kPa", "Pa", 3},       {"MPa", "Pa", 6},       {"GPa", "Pa", 9},    {"N/m2", "Pa", 0},
-     {"N/m^2", "Pa", 0},     {"N/mm2", "Pa", 6},     {"N/mm^2", "Pa", 6}, {"N", "N", 0},
-     {"mN", "N", -3},        {"kN", "N", 3},         {"N m", "N m", 0},   {"Nm", "N m", 0},
-     {"N mm", "N m", -3},    {"Nmm", "N m", -3},     {"kN m", "N m", 3},  {"rad", "rad", 0},
-     {"mrad", "rad", -3},    {"s", "s", 0},          {"ms", "s", -3},     {"-", "", 0},
-     {"%", "", -2}}};
+    {{"m", "m", 0},          {"cm", "m", -2},    {"mm", "m", -3},    {"um", "m", -6},    {"\xC2\xB5m", "m", -6},
+     {"\xCE\xBCm", "m", -6}, {"nm", "m", -9},    {"Pa", "Pa", 0},    {"kPa", "Pa", 3},   {"MPa", "Pa", 6},
+     {"GPa", "Pa", 9},       {"N/m2", "Pa", 0},  {"N/m^2", "Pa", 0}, {"N/mm2", "Pa", 6}, {"N/mm^2", "Pa", 6},
+     {"N", "N", 0},          {"mN", "N", -3},    {"kN", "N", 3},     {"N m", "N m", 0},  {"Nm", "N m", 0},
+     {"N mm", "N m", -3},    {"Nmm", "N m", -3}, {"kN m", "N m", 3}, {"rad", "rad", 0},  {"mrad", "rad", -3},
+     {"s", "s", 0},          {"ms", "s", -3},    {"-", "", 0},       {"%", "", -2}}};
 
 /// Null: there is none of this name.
 const Unit* find_unit(std::string_view word);

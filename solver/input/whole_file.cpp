@@ -23,9 +23,7 @@ constexpr std::size_t kLongestStem = 200;
 /// The system follows as many links.
 constexpr int kMaxLinks = 40;
 
-[[noreturn]] void refuse(const fs::path& file, int error) {
-  throw InputError(file.string(), why_not_written(error));
-}
+[[noreturn]] void refuse(const fs::path& file, int error) { throw InputError(file.string(), why_not_written(error)); }
 
 /// For the result of a call of the system, which says why in errno.
 void require(bool done) {
@@ -157,17 +155,14 @@ void write_whole_named_file(const fs::path& file, const WriteNamed& write) {
     const fs::path target = behind_links(file);
     struct stat old {};
     const bool exists = stat(target.c_str(), &old) == 0;
-    if (exists && !S_ISREG(old.st_mode))
-      return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), target, write, false);
+    if (exists && !S_ISREG(old.st_mode)) return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), target, write, false);
     replace(target, write, exists ? &old : nullptr);
   } catch (const std::system_error& error) {
     refuse(file, error.code().value());
   }
 }
 
-void write_whole_file(const fs::path& file, std::string_view content) {
-  write_whole_named_file(file, put(content));
-}
+void write_whole_file(const fs::path& file, std::string_view content) { write_whole_named_file(file, put(content)); }
 
 void replace_whole_file(const fs::path& file, std::string_view content) {
   try {

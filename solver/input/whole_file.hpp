@@ -13,11 +13,10 @@ namespace slipstick::solver {
 /// Writes a file's content to a stream; `draft` is the stream's name.
 using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
 
-/// Replaces a file atomically, also if this process is killed or the machine stops: `write` fills a draft in
-/// the same folder, which is flushed to the disk and renamed. The next writer of the file reuses the draft of
-/// a killed process. Links are followed; devices and pipes, such as /dev/stdout, are written to directly.
-/// Throws InputError with the system's reason and a remedy if the file cannot be written; the old file then
-/// stays.
+/// Replaces a file atomically, also if this process is killed or the machine stops: `write` fills a draft in the same
+/// folder, which is flushed to the disk and renamed. The next writer of the file reuses the draft of a killed process.
+/// Links are followed; devices and pipes, such as /dev/stdout, are written to directly. Throws InputError with the
+/// system's reason and a remedy if the file cannot be written; the old file then stays.
 void write_whole_named_file(const std::filesystem::path& file, const WriteNamed& write);
 /// The same without the draft's name.
 template <std::invocable<std::FILE*> Write>

@@ -33,8 +33,8 @@ constexpr double kMaxSlender = 1000.0;
 /// single shape, or the lowest points of several shapes of which the nearest counts.
 std::array<double, 2> least_half_sides(const Scene& scene, const std::vector<Surface>& surfaces,
                                        const std::optional<std::array<double, 2>>& expected) {
-  const bool hertz = scene.contact.pressure == PressureModel::hertz ||
-                     scene.contact.pressure == PressureModel::hertz_averaged;
+  const bool hertz =
+      scene.contact.pressure == PressureModel::hertz || scene.contact.pressure == PressureModel::hertz_averaged;
   if (scene.ends_at_grid_edge && !hertz) return {};
   if (surfaces.size() == 1) return expected.value_or(std::array<double, 2>{});
   const bool pressed = scene.combine == Combine::nearest && scene.contact.pressure == PressureModel::solved;
@@ -58,9 +58,9 @@ void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
 Grid require_not_slender(const Scene& scene, const Grid& grid) {
   const double slender = grid.h1 / grid.h2;
   if (slender <= kMaxSlender && slender >= 1.0 / kMaxSlender) return grid;
-  throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
-                   fmt::format("cells at most {} times as long as wide; these are {:.4g} x {:.4g}",
-                               kMaxSlender, grid.h1, grid.h2));
+  throw InputError(
+      scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+      fmt::format("cells at most {} times as long as wide; these are {:.4g} x {:.4g}", kMaxSlender, grid.h1, grid.h2));
 }
 
 /// The largest normal load of a scene's steps, N.
@@ -72,9 +72,8 @@ std::optional<double> largest_normal(const Scene& scene) {
   return largest;
 }
 
-/// The scene's grid, in m. Throws InputError for an extent that is missing or too small, for cells that do
-/// not match a height map, and for slender ones. effective_modulus: of a pair at least as soft as the bodies,
-/// Pa.
+/// The scene's grid, in m. Throws InputError for an extent that is missing or too small, for cells that do not match a
+/// height map, and for slender ones. effective_modulus: of a pair at least as soft as the bodies, Pa.
 Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double effective_modulus) {
   if (const auto grid = height_map_grid(surfaces)) {
     const std::array<Index, 2> samples{grid->n1, grid->n2};
@@ -89,8 +88,7 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
   const auto load = largest_normal(scene);
   // Where a layer is bonded to a body, the contact is not known, but a rectangle around it.
   const bool known = load && scene.layer.kind == nullptr && !(scene.grid.extent && is_coated(scene));
-  const auto expected =
-      known ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
+  const auto expected = known ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
   if (!scene.grid.extent && !expected) {
     throw InputError(scene.source.string(), "grid.extent", "(missing)",
                      "[L1, L2], two lengths, as [\"1 mm\", \"1 mm\"], since how far the contact reaches is "
@@ -102,16 +100,14 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
   for (std::size_t i = 0; i < 2; ++i) {
     const auto cells = static_cast<double>(scene.grid.cells[i]);
     const double margin = std::min(kExtentMarginCells, cells / 8.0);
-    h[i] =
-        scene.grid.extent ? (*scene.grid.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
+    h[i] = scene.grid.extent ? (*scene.grid.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
     if (scene.grid.extent && expected && surfaces.size() == 1 && scene.grid.cells[i] > 1 &&
         h[i] > 2.0 * (*expected)[i]) {
-      throw InputError(
-          scene.source.string(), "grid.extent", units.pair_text("m", *scene.grid.extent),
-          fmt::format("at most {:.2g} times the contact, about {}, which fills less than "
-                      "one of [{}, {}] cells; or left out",
-                      0.5 * cells, units.pair_text("m", {2.0 * (*expected)[0], 2.0 * (*expected)[1]}),
-                      scene.grid.cells[0], scene.grid.cells[1]));
+      throw InputError(scene.source.string(), "grid.extent", units.pair_text("m", *scene.grid.extent),
+                       fmt::format("at most {:.2g} times the contact, about {}, which fills less than "
+                                   "one of [{}, {}] cells; or left out",
+                                   0.5 * cells, units.pair_text("m", {2.0 * (*expected)[0], 2.0 * (*expected)[1]}),
+                                   scene.grid.cells[0], scene.grid.cells[1]));
     }
   }
   return require_not_slender(scene, {scene.grid.cells[0], scene.grid.cells[1], h[0], h[1]});
@@ -220,16 +216,14 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
     }
   }
   model.gap = make_gap(scene, surfaces, model.grid, model.length_unit);
-  model.pressure_part = reducible(scene)
-                            ? Reduction(model.grid, model.gap, model.gap.isFinite().cast<double>())
-                            : Reduction(model.grid);
+  model.pressure_part =
+      reducible(scene) ? Reduction(model.grid, model.gap, model.gap.isFinite().cast<double>()) : Reduction(model.grid);
   model.threads = threads_for(scene, model.pressure_part.grid());
 
   const auto radii = hertzian_radii(surfaces);
   if (radii && model.normal_load && is_bare(scene)) {
-    model.hertz =
-        hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
-                      to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());
+    model.hertz = hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
+                                to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());
   }
   require_memory(scene, model, {.pressure = 0.0, .tractions = 0.0});
   return model;

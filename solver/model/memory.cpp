@@ -89,8 +89,7 @@ void keep_freed_blocks() {
 }
 
 std::string bytes_text(double bytes) {
-  return bytes < 0x1p30 ? fmt::format("{:.3g} MiB", bytes / 0x1p20)
-                        : fmt::format("{:.3g} GiB", bytes / 0x1p30);
+  return bytes < 0x1p30 ? fmt::format("{:.3g} MiB", bytes / 0x1p20) : fmt::format("{:.3g} GiB", bytes / 0x1p30);
 }
 
 double memory_within(std::optional<double> limit) { return limit ? *limit : available_memory(); }

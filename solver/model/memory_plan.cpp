@@ -24,8 +24,7 @@ constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, without operators and workspaces.
 constexpr double kFieldsAround = 12.0;
 constexpr double kFieldsAroundPressure = 9.3;  ///< where only the pressure is solved
-/// Doubles a cell of the whole grid that the solve of a pressure holds in addition to operators and
-/// workspaces.
+/// Doubles a cell of the whole grid that the solve of a pressure holds in addition to operators and workspaces.
 constexpr double kFieldsOfPressure = 1.4;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
 constexpr double kFieldsOfOthers = 21.0;
@@ -39,9 +38,7 @@ constexpr double kFieldsBeforeTurns = 21.0;
 constexpr double kFieldsOfStresses = 80.0, kFieldsOfState = 9.5;
 /// The program and its libraries, that for HDF5 included; where several processes share a grid MPI's too.
 double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
-double field_bytes(double fields, Index cells) {
-  return fields * sizeof(double) * static_cast<double>(cells);
-}
+double field_bytes(double fields, Index cells) { return fields * sizeof(double) * static_cast<double>(cells); }
 double bytes_around(const Scene& scene, const Grid& grid) {
   const bool pressure = scene.contact.friction.is_frictionless() && scene.solver.model == ModelChoice::full;
   return field_bytes(pressure ? kFieldsAroundPressure : kFieldsAround, grid.cells());
@@ -56,20 +53,19 @@ void require_memory(const Scene& scene, const Grid& grid, double bytes) {
   if (!scene.solver.memory_limit && bytes < kLittleMemory) return;
   const double most = memory_within(scene.solver.memory_limit);
   if (bytes < most) return;
-  throw OutOfMemory(
-      scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
-      fmt::format("what fits in memory: this needs {} with operator = \"{}\", and {} {}; {} less",
-                  bytes_text(bytes), to_string(scene.solver.op), bytes_text(most),
-                  scene.solver.memory_limit ? "are allowed (--memory-limit)" : "are there",
-                  scene.solver.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
-                  : scene.solver.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
-                                                            : "fewer cells take"));
+  throw OutOfMemory(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+                    fmt::format("what fits in memory: this needs {} with operator = \"{}\", and {} {}; {} less",
+                                bytes_text(bytes), to_string(scene.solver.op), bytes_text(most),
+                                scene.solver.memory_limit ? "are allowed (--memory-limit)" : "are there",
+                                scene.solver.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
+                                : scene.solver.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
+                                                                          : "fewer cells take"));
 }
 
 double memory_of_stresses(const Grid& grid, std::size_t states) {
   const double padded = 0.25 * static_cast<double>(fast_length(2 * grid.n1) * fast_length(2 * grid.n2));
-  const double fields = kFieldsOfStresses * padded +
-                        kFieldsOfState * static_cast<double>(states) * static_cast<double>(grid.cells());
+  const double fields =
+      kFieldsOfStresses * padded + kFieldsOfState * static_cast<double>(states) * static_cast<double>(grid.cells());
   return program_bytes(grid) + fields * sizeof(double);
 }
 
@@ -81,9 +77,8 @@ void require_memory_for_files(const Scene& scene) {
     const std::uintmax_t size = file.empty() ? 0 : std::filesystem::file_size(file, error);
     const auto bytes = static_cast<double>(size);
     if (error || bytes < kLittleMemory || bytes < memory_within(scene.solver.memory_limit)) continue;
-    throw OutOfMemory(file.string(),
-                      fmt::format("holds {}; allowed: what fits in memory, {}", bytes_text(bytes),
-                                  bytes_text(memory_within(scene.solver.memory_limit))));
+    throw OutOfMemory(file.string(), fmt::format("holds {}; allowed: what fits in memory, {}", bytes_text(bytes),
+                                                 bytes_text(memory_within(scene.solver.memory_limit))));
   }
 }
 
@@ -105,8 +100,7 @@ Memory predicted_memory(const Scene& scene, const Model& model, const CandidateF
   const bool whole = model.pressure_coupling || model.forces || scene.contact.pressure == PressureModel::file;
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
-  const double coupling =
-      moves_by_pressure(scene, model) ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
+  const double coupling = moves_by_pressure(scene, model) ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
   const bool newton = scene.solver.method == Method::coulomb;
   const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
                             : scene.contact.friction.is_frictionless()
@@ -115,8 +109,7 @@ Memory predicted_memory(const Scene& scene, const Model& model, const CandidateF
   const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
                                 : field_bytes(kFieldsOfOthers, grid.cells());
   const double pressed = normal + kept + field_bytes(kFieldsOfPressure, model.grid.cells());
-  const double held =
-      std::max(tangential, coupling) + kept + of_part + field_bytes(kFieldsHeld, model.grid.cells());
+  const double held = std::max(tangential, coupling) + kept + of_part + field_bytes(kFieldsHeld, model.grid.cells());
   const double solver = std::max({normal, tangential, coupling});
   return {solver, program_bytes(grid) + std::max({pressed, held, bytes_around(scene, model.grid)}) - solver};
 }

@@ -59,14 +59,13 @@ struct Dimensionless {
 struct Model : Dimensionless {
   using Dimensionless::Dimensionless;
 
-  std::optional<double> normal_load;  ///< the largest of the scene's steps
-  Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
-  std::optional<HertzContact>
-      hertz;                    ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
-  bool shear_coupling = false;  ///< K31 and K32 enter too
-  bool forces = false;          ///< some step brings a tangential force or displacement
-  Reduction pressure_part;      ///< of the grid, on which the pressure is found
-  int threads = 1;              ///< that solve it
+  std::optional<double> normal_load;       ///< the largest of the scene's steps
+  Eigen::ArrayXd gap;                      ///< undeformed, one value a cell; infinite where the bodies cannot touch
+  std::optional<HertzContact> hertz;       ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
+  bool shear_coupling = false;             ///< K31 and K32 enter too
+  bool forces = false;                     ///< some step brings a tangential force or displacement
+  Reduction pressure_part;                 ///< of the grid, on which the pressure is found
+  int threads = 1;                         ///< that solve it
   std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };
 

@@ -43,21 +43,17 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
     const Reduction all(model.grid, carrying(model, pressure, false), ArrayXd::Ones(model.grid.cells()));
     return all.quadrant() ? all : Reduction(model.grid, occupied);
   }
-  return mirrored ? Reduction(model.grid, carrying(model, pressure, true), occupied)
-                  : Reduction(model.grid, occupied);
+  return mirrored ? Reduction(model.grid, carrying(model, pressure, true), occupied) : Reduction(model.grid, occupied);
 }
 
-std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part,
-                                bool translations) {
+std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part, bool translations) {
   std::vector<Omission> left_out = scene.left_out;
   const Grid& grid = part.grid();
   if (!model.pressure_coupling) {
-    left_out.push_back({"K13, K23", !model.law->couples()
-                                        ? "similar materials: pressure moves both surfaces alike"
-                                        : "contact.coupling = \"none\""});
+    left_out.push_back({"K13, K23", !model.law->couples() ? "similar materials: pressure moves both surfaces alike"
+                                                          : "contact.coupling = \"none\""});
   } else if (!model.shear_coupling && model.law->couples()) {
-    left_out.push_back(
-        {"K31, K32", "shear leaves the pressure as it is, unless contact.coupling = \"full\""});
+    left_out.push_back({"K31, K32", "shear leaves the pressure as it is, unless contact.coupling = \"full\""});
   }
   if (!translations) {
     left_out.push_back({"translations", scene.solver.method == Method::coulomb
@@ -66,8 +62,8 @@ std::vector<Omission> omissions(const Scene& scene, const Model& model, const Re
   }
   if (part.trimmed()) {
     const Index mirrored = part.quadrant() ? 2 : 1;
-    left_out.push_back({fmt::format("all but {} x {} of {} x {} cells", mirrored * grid.n1,
-                                    mirrored * grid.n2, model.grid.n1, model.grid.n2),
+    left_out.push_back({fmt::format("all but {} x {} of {} x {} cells", mirrored * grid.n1, mirrored * grid.n2,
+                                    model.grid.n1, model.grid.n2),
                         "the rest of the grid lies outside the contact's bounding rectangle"});
   }
   if (part.quadrant()) {

@@ -23,7 +23,6 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
 
 /// The parts of the problem that a solve leaves out, with the reasons: omissions of the scene, of
 /// traction_part() and of has_translations().
-std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part,
-                                bool translations);
+std::vector<Omission> omissions(const Scene& scene, const Model& model, const Reduction& part, bool translations);
 
 }  // namespace slipstick::solver

@@ -25,9 +25,7 @@ Part within(Part part, Part other) {
   const Index first = std::max(part.first, other.first);
   return {first, std::max(first, std::min(part.last, other.last))};
 }
-Part widened(Part part, Index depth) {
-  return part.count() == 0 ? part : Part{part.first - depth, part.last + depth};
-}
+Part widened(Part part, Index depth) { return part.count() == 0 ? part : Part{part.first - depth, part.last + depth}; }
 
 /// MPI counts in int, which many bytes would not fit: things of several bytes are counted instead.
 class Thing {
@@ -104,15 +102,14 @@ class MpiCommunicator final : public Communicator {
       const int other = (round - rank_ + number_) % number_;
       if (other == rank_) continue;
       const auto block = [&](int rows_of, int columns_of) -> Block {
-        return {
-            part_of(rows_of, matrix.rows, matrix.rows_of_rank).count(),
-            static_cast<std::size_t>(part_of(columns_of, matrix.columns, matrix.columns_of_rank).count()) *
-                matrix.entry};
+        return {part_of(rows_of, matrix.rows, matrix.rows_of_rank).count(),
+                static_cast<std::size_t>(part_of(columns_of, matrix.columns, matrix.columns_of_rank).count()) *
+                    matrix.entry};
       };
       const Block rows = block(rank_, other);
       const Block columns = block(other, rank_);
-      auto* const start = static_cast<std::byte*>(buffer) +
-                          static_cast<std::size_t>(other * matrix.columns_of_rank) * matrix.entry;
+      auto* const start =
+          static_cast<std::byte*>(buffer) + static_cast<std::size_t>(other * matrix.columns_of_rank) * matrix.entry;
       to_columns ? exchange(start, matrix.row, other, rows, columns)
                  : exchange(start, matrix.row, other, columns, rows);
     }
@@ -159,12 +156,11 @@ class MpiCommunicator final : public Communicator {
       for (Index i = 0; i < out; ++i) {
         std::memcpy(outgoing_.data() + static_cast<std::size_t>(i) * mine.bytes, row(first + i), mine.bytes);
       }
-      MPI_Sendrecv(outgoing_.data(), static_cast<int>(out), sent, out > 0 ? other : MPI_PROC_NULL, 1,
-                   incoming_.data(), static_cast<int>(in), received, in > 0 ? other : MPI_PROC_NULL, 1,
-                   MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      MPI_Sendrecv(outgoing_.data(), static_cast<int>(out), sent, out > 0 ? other : MPI_PROC_NULL, 1, incoming_.data(),
+                   static_cast<int>(in), received, in > 0 ? other : MPI_PROC_NULL, 1, MPI_COMM_WORLD,
+                   MPI_STATUS_IGNORE);
       for (Index i = 0; i < in; ++i) {
-        std::memcpy(row(first + i), incoming_.data() + static_cast<std::size_t>(i) * theirs.bytes,
-                    theirs.bytes);
+        std::memcpy(row(first + i), incoming_.data() + static_cast<std::size_t>(i) * theirs.bytes, theirs.bytes);
       }
       add_sent(mine.bytes, out);
     }

@@ -79,8 +79,7 @@ double PositivePressures::gap(const ArrayXd& p, const ArrayXd& opening) const {
   });
 }
 
-Index PositivePressures::linearise(const ArrayXd& z, double, const std::array<double, 2>&,
-                                   TangentSpace& space) const {
+Index PositivePressures::linearise(const ArrayXd& z, double, const std::array<double, 2>&, TangentSpace& space) const {
   const auto changed = sweep_.sum<Index>([&](Index first, Index last, Index& count) {
     for (Index i = first; i < last; ++i) {
       const bool contact = z[i] > 0.0;
@@ -263,8 +262,7 @@ double FrictionDiscs::energy_error(const ArrayXd& q, const ArrayXd& slip, double
   });
 }
 
-double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement,
-                                   const ArrayXd* reference) const {
+double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement, const ArrayXd* reference) const {
   const double sum = sweep_.sum<double>([&](Index first, Index last, double& part) {
     const Index count = last - first;
     const auto size = [&](const ArrayXd& v) {
@@ -290,8 +288,7 @@ Index FrictionDiscs::linearise(const ArrayXd& z, double rho, const std::array<do
       }
       const double f1 = -z[i + n] / size;
       const double f2 = z[i] / size;
-      space.set_line(i, f1, f2, (size - bound_[i]) / (rho * bound_[i]),
-                     f1 * f1 * mean[0] + f2 * f2 * mean[1]);
+      space.set_line(i, f1, f2, (size - bound_[i]) / (rho * bound_[i]), f1 * f1 * mean[0] + f2 * f2 * mean[1]);
     }
   });
   if (space.free.count() != sweep_.count()) space.free = sweep_;  // none is held fast
@@ -325,14 +322,11 @@ template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXf>(const ArrayXd&
                                                                   Motions<1>) const;
 template LoadsAlong<1> FrictionDiscs::loads_along<1, MotionField>(const ArrayXd&, Motions<1>, Parts<1>,
                                                                   Motions<1>) const;
-template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXf>(const ArrayXd&, Tangents<1>, Parts<1>,
-                                                              Motions<1>) const;
+template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXf>(const ArrayXd&, Tangents<1>, Parts<1>, Motions<1>) const;
 template LoadsAlong<2> FrictionDiscs::loads_along<2, MotionField>(const ArrayXd&, Motions<2>, Parts<2>,
                                                                   Motions<2>) const;
-template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXf>(const ArrayXd&, Tangents<2>, Parts<2>,
-                                                              Motions<2>) const;
+template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXf>(const ArrayXd&, Tangents<2>, Parts<2>, Motions<2>) const;
 template LoadsAlong<3> FrictionDiscs::loads_along<3, MotionField>(const ArrayXd&, Motions<3>, Parts<3>,
                                                                   Motions<3>) const;
-template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&, Tangents<3>, Parts<3>,
-                                                              Motions<3>) const;
+template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&, Tangents<3>, Parts<3>, Motions<3>) const;
 }  // namespace slipstick::solver

@@ -44,8 +44,7 @@ class PositivePressures {
 
   explicit PositivePressures(Sweep cells) : sweep_(std::move(cells)) {}
   /// In the cells where a field is not zero.
-  PositivePressures(const Grid& grid, const Eigen::ArrayXd& reachable)
-      : PositivePressures(Sweep(grid, reachable)) {}
+  PositivePressures(const Grid& grid, const Eigen::ArrayXd& reachable) : PositivePressures(Sweep(grid, reachable)) {}
   explicit PositivePressures(const Eigen::ArrayXd& reachable) : PositivePressures(Sweep(reachable)) {}
 
   Index cells() const { return sweep_.size(); }
@@ -55,17 +54,14 @@ class PositivePressures {
 
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
-                            const Eigen::Vector<double, M>& x,
-                            const std::array<const MotionField*, M>& c) const;
+                            const Eigen::Vector<double, M>& x, const std::array<const MotionField*, M>& c) const;
 
   /// Sum of p times the opening above its least value: how far the energy can fall by moving load to where
   /// the surfaces are closest. opening: K p + h, less any approach.
   double gap(const Eigen::ArrayXd& p, const Eigen::ArrayXd& opening) const;
 
   /// Zero: tolerances of pressures are far above the rounding of their gap.
-  static double gap_rounding(const Eigen::ArrayXd&, const Eigen::ArrayXd&, const Eigen::ArrayXd*) {
-    return 0.0;
-  }
+  static double gap_rounding(const Eigen::ArrayXd&, const Eigen::ArrayXd&, const Eigen::ArrayXd*) { return 0.0; }
 
   /// The state of each cell by the natural map at z = p - rho s: free where z > 0.
   Index linearise(const Eigen::ArrayXd& z, double, const std::array<double, 2>&, TangentSpace& space) const;
@@ -95,8 +91,7 @@ class FrictionDiscs {
 
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
-                            const Eigen::Vector<double, M>& x,
-                            const std::array<const MotionField*, M>& c) const;
+                            const Eigen::Vector<double, M>& x, const std::array<const MotionField*, M>& c) const;
 
   /// Sum of s.q + mu p |s|; see Certificate.
   double gap(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip) const;
@@ -111,8 +106,7 @@ class FrictionDiscs {
 
   /// Stick where |z| <= mu p. Elsewhere q moves along its circle, against the stiffness (|z| - mu p)/(rho mu
   /// p), which equals |s|/(mu p) once slip opposes traction.
-  Index linearise(const Eigen::ArrayXd& z, double rho, const std::array<double, 2>& mean,
-                  TangentSpace& space) const;
+  Index linearise(const Eigen::ArrayXd& z, double rho, const std::array<double, 2>& mean, TangentSpace& space) const;
 
   void add_jump(const Eigen::ArrayXd& z, const Eigen::ArrayXd& q, Eigen::ArrayXd& step) const;
 

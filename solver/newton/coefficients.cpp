@@ -22,8 +22,7 @@ struct GslMatrix {
   gsl_matrix_view view;
 };
 struct GslVector {
-  explicit GslVector(Coefficients& of)
-      : view(gsl_vector_view_array(of.data(), static_cast<std::size_t>(of.size()))) {}
+  explicit GslVector(Coefficients& of) : view(gsl_vector_view_array(of.data(), static_cast<std::size_t>(of.size()))) {}
   operator gsl_vector*() { return &view.vector; }
   gsl_vector_view view;
 };

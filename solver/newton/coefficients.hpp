@@ -11,8 +11,7 @@ inline constexpr int kMaxConditions = 4;
 
 /// One value a condition, and a matrix of them; nothing is allocated.
 using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConditions, 1>;
-using CoefficientMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConditions, kMaxConditions>;
+using CoefficientMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConditions, kMaxConditions>;
 
 /// The x of least length among the least-squares solutions of matrix x = right. A single cell, for example,
 /// does not determine its motion.
@@ -44,8 +43,7 @@ class SmallCholesky {
   Eigen::LLT<CoefficientMatrix> factor_;
 };
 
-/// Least squares of a tall system of independent columns, and the pseudo-inverse of such a matrix; of any
-/// size.
+/// Least squares of a tall system of independent columns, and the pseudo-inverse of such a matrix; of any size.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 

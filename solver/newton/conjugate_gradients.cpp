@@ -5,8 +5,7 @@
 namespace slipstick::solver {
 
 std::string CgSummary::message() const {
-  const double at =
-      std::isnan(breakdown_at) ? std::abs(breakdown_at) : breakdown_at;  // its sign says nothing
+  const double at = std::isnan(breakdown_at) ? std::abs(breakdown_at) : breakdown_at;  // its sign says nothing
   switch (status) {
     case CgStatus::indefinite:
       return fmt::format("curvature {:.3g} along a search direction", at);

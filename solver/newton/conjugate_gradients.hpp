@@ -121,8 +121,7 @@ class CgConstraints {
   /// storage: a field for each condition there will be; not owned.
   explicit CgConstraints(std::span<CgTangent> storage) : tangents_(storage) {}
 
-  /// Tangents w_k = M c_k. False if they are linearly dependent; then they must not be used. y, z:
-  /// overwritten.
+  /// Tangents w_k = M c_k. False if they are linearly dependent; then they must not be used. y, z: overwritten.
   template <SplitMap Preconditioner>
   bool prepare(Preconditioner& preconditioner, Conditions conditions, Eigen::ArrayXd& y, Eigen::ArrayXd& z) {
     count_ = conditions.size();
@@ -134,9 +133,8 @@ class CgConstraints {
       clear(cells, z);
       clear(cells, tangents_[k]);
       cells.each([&](Index first, Index last) {
-        for_components(cells, y, first, last, [&](Index start, Index n) {
-          conditions_[k]->add_to(y.segment(start, n), start, 1.0);
-        });
+        for_components(cells, y, first, last,
+                       [&](Index start, Index n) { conditions_[k]->add_to(y.segment(start, n), start, 1.0); });
         preconditioner.project(first, last, y);
         preconditioner.load(first, last, y, z);
       });
@@ -155,8 +153,7 @@ class CgConstraints {
     const SmallCholesky factor(products);
     if (!factor.is_definite()) return false;
     // The part of each condition that is left when those before it are taken out.
-    if (!((factor.diagonal().array().square() / products.diagonal().array()) > kDependent).all())
-      return false;
+    if (!((factor.diagonal().array().square() / products.diagonal().array()) > kDependent).all()) return false;
     return factorise(preconditioner, z);
   }
 
@@ -166,9 +163,8 @@ class CgConstraints {
   bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, Eigen::ArrayXd& z) {
     for (CgTangent& w : tangents_.first(count_)) {
       all.each([&](Index first, Index last) {
-        for_components(all, z, first, last, [&](Index start, Index n) {
-          z.segment(start, n) = w.segment(start, n).cast<double>();
-        });
+        for_components(all, z, first, last,
+                       [&](Index start, Index n) { z.segment(start, n) = w.segment(start, n).cast<double>(); });
         preconditioner.project(first, last, z);
         for_components(all, z, first, last, [&](Index start, Index n) {
           w.segment(start, n) = z.segment(start, n).unaryExpr([](double value) { return to_tangent(value); });
@@ -179,8 +175,7 @@ class CgConstraints {
   }
 
   /// sum += c_k.y in some cells
-  void add_products(const Sweep& cells, Index first, Index last, const Eigen::ArrayXd& y,
-                    CgProducts& sum) const {
+  void add_products(const Sweep& cells, Index first, Index last, const Eigen::ArrayXd& y, CgProducts& sum) const {
     for (std::size_t k = 0; k < count_; ++k) {
       for_components(cells, y, first, last, [&](Index start, Index n) {
         sum.conditions[k] += conditions_[k]->dot(start, y.segment(start, n));
@@ -227,8 +222,7 @@ class CgConstraints {
 
   /// x += the combination of tangents with these values of c_k.x.
   template <SplitMap Preconditioner>
-  void add_with_values(const Preconditioner& preconditioner, const Coefficients& values,
-                       Eigen::ArrayXd& x) const {
+  void add_with_values(const Preconditioner& preconditioner, const Coefficients& values, Eigen::ArrayXd& x) const {
     const Coefficients parts = -(of_tangents_ * values);
     const Sweep& cells = preconditioner.cells();
     cells.each([&](Index first, Index last) {
@@ -258,8 +252,7 @@ class CgConstraints {
     work(w);
   }
   template <typename Field, typename Work>
-  static void for_components(const Sweep& cells, const Field& field, Index first, Index last,
-                             const Work& work) {
+  static void for_components(const Sweep& cells, const Field& field, Index first, Index last, const Work& work) {
     for (Index start = first; start < field.size(); start += cells.size()) work(start, last - first);
   }
   /// (C^T W)^-1 and its transpose, with the tangents projected onto the preconditioner's range, which
@@ -293,8 +286,8 @@ class CgConstraints {
 template <LinearMap Map, SplitMap Preconditioner, class Condition>
 class ProjectedCg {
  public:
-  ProjectedCg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
-              Eigen::ArrayXd& r, const CgWorkspace& work, Eigen::ArrayXd& x)
+  ProjectedCg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints, Eigen::ArrayXd& r,
+              const CgWorkspace& work, Eigen::ArrayXd& x)
       : map_(map),
         preconditioner_(preconditioner),
         constraints_(constraints),
@@ -403,8 +396,7 @@ class ProjectedCg {
       return false;
     }
     const double step = square / curvature;
-    const Coefficients multipliers =
-        constraints_.multipliers(left_ - step * constraints_.first(products.tangents));
+    const Coefficients multipliers = constraints_.multipliers(left_ - step * constraints_.first(products.tangents));
     summary.multipliers += multipliers;
     clear_elsewhere(y_);
     cells_.each([&](Index first, Index last) {
@@ -426,8 +418,7 @@ class ProjectedCg {
   Coefficients left_;   ///< products of the tangents with the residual: rounding, which must not grow
 };
 
-/// Preconditioned conjugate gradients for A x = b - sum of multiplier_k c_k, where c_k.x keeps its first
-/// value.
+/// Preconditioned conjugate gradients for A x = b - sum of multiplier_k c_k, where c_k.x keeps its first value.
 ///
 /// 1. r = b - A x, projected; y = M r, projected; d = y.
 /// 2. x += a d, r -= a A d with a = r.y / d.A d; a curvature d.A d <= 0 ends the iteration.
@@ -438,8 +429,7 @@ class ProjectedCg {
 /// and sweeps over the cells four times, twice within the maps. Allocates nothing.
 template <LinearMap Map, SplitMap Preconditioner, class Condition>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
-                       Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work,
-                       Eigen::ArrayXd& x) {
+                       Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work, Eigen::ArrayXd& x) {
   return ProjectedCg(map, preconditioner, constraints, r, work, x).run(options);
 }
 

@@ -64,8 +64,7 @@ auto Extension::near_sums(const double* in, Index n1, Index n2, Index row, Index
   columns.head(last - first + 2 * kReach).setZero();
   columns.segment(left - (first - kReach), count) = with_neighbours(line);
   Line sums;
-  sums.head(last - first) =
-      with_neighbours([&](Index k) { return columns.segment(kReach + k, last - first); });
+  sums.head(last - first) = with_neighbours([&](Index k) { return columns.segment(kReach + k, last - first); });
   return sums;
 }
 
@@ -90,10 +89,8 @@ void Extension::fill_blocks(const double* in, Index component) {
 }
 
 /// Adds the means of their blocks to the sums of `count` cells of a row, from the first one of a block on.
-void Extension::add_means(const Level& blocks, Index component, Index row, Index column, Index count,
-                          Line& sums) {
-  const double* const means =
-      blocks.means.data() + (component * blocks.n1 + row / kSide) * blocks.n2 + column / kSide;
+void Extension::add_means(const Level& blocks, Index component, Index row, Index column, Index count, Line& sums) {
+  const double* const means = blocks.means.data() + (component * blocks.n1 + row / kSide) * blocks.n2 + column / kSide;
   const Index whole = count / kSide * kSide;
   for (Index j = 0; j < whole; j += kSide) sums.segment<kSide>(j) += means[j / kSide];
   if (whole < count) sums.segment(whole, count - whole) += means[whole / kSide];
@@ -134,8 +131,7 @@ void Extension::spread(const Field& in, const Take& take) {
       const Index column = start - row * grid_.n2;
       for (std::size_t c = 0; c < components; ++c) {
         const auto component = static_cast<Index>(c);
-        sums[c] =
-            near_sums(in.data() + component * grid_.cells(), grid_.n1, grid_.n2, row, column, column + count);
+        sums[c] = near_sums(in.data() + component * grid_.cells(), grid_.n1, grid_.n2, row, column, column + count);
         add_means(blocks_[0], component, row, column, count, sums[c]);
       }
       take(start, count, sums);
@@ -177,16 +173,14 @@ void Extension::prepare_with(const FreePart& free_part, const Weights& weights) 
     });
     share_adjacent_rows(grid_, work_, kReach);
     spread<1>(work_, [&](Index first, Index count, const auto& sums) {
-      weights_.segment(static_cast<Index>(entry) * n + first, count) =
-          sums[0].head(count).unaryExpr(&to_tangent);
+      weights_.segment(static_cast<Index>(entry) * n + first, count) = sums[0].head(count).unaryExpr(&to_tangent);
     });
   }
   clear(mixed_, work_);
   mixed_.each([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) {
       Matrix near{};
-      for (std::size_t entry = 0; entry < entries; ++entry)
-        near[entry] = weights_[static_cast<Index>(entry) * n + i];
+      for (std::size_t entry = 0; entry < entries; ++entry) near[entry] = weights_[static_cast<Index>(entry) * n + i];
       near = weights(i, near);
       for (std::size_t entry = 0; entry < entries; ++entry)
         weights_[static_cast<Index>(entry) * n + i] = to_tangent(near[entry]);
@@ -213,8 +207,7 @@ void Extension::prepare(const Field& free) {
 }
 
 void Extension::prepare(const TangentSpace& space, const Packing& packing) {
-  if (space.components() == 1)
-    return prepare_scalars([&](Index cell) { return packing.holds(cell, space.f1); });
+  if (space.components() == 1) return prepare_scalars([&](Index cell) { return packing.holds(cell, space.f1); });
   if (!knows_contact_) find_mixed([&](Index cell) { return packing.place(cell) >= 0; }, false);
   knows_contact_ = true;
   prepare_with(
@@ -230,16 +223,15 @@ void Extension::prepare(const TangentSpace& space, const Packing& packing) {
         const Index i = packing.place(cell);
         if (i < 0) {
           const double determinant = (near[0] + kFade) * (near[2] + kFade) - near[1] * near[1];
-          return Matrix{(near[2] + kFade) / determinant, -near[1] / determinant,
-                        (near[0] + kFade) / determinant};
+          return Matrix{(near[2] + kFade) / determinant, -near[1] / determinant, (near[0] + kFade) / determinant};
         }
         if (!space.on_line(i)) return Matrix{};
         const double f1 = space.f1[i];
         const double f2 = space.f2[i];
         const double cross = 2.0 * f1 * f2 * near[1];
         const double across = 1.0 / (f2 * f2 * near[0] - cross + f1 * f1 * near[2] + kFade);
-        const double along = (1.0 - static_cast<double>(space.scale[i])) /
-                             (f1 * f1 * near[0] + cross + f2 * f2 * near[2] + kFade);
+        const double along =
+            (1.0 - static_cast<double>(space.scale[i])) / (f1 * f1 * near[0] + cross + f2 * f2 * near[2] + kFade);
         return Matrix{across * f2 * f2 + along * f1 * f1, (along - across) * f1 * f2,
                       across * f1 * f1 + along * f2 * f2};
       });
@@ -302,8 +294,7 @@ void Extension::extend(Field& y) {
 
 void Extension::collect(Field& y) { y.size() == grid_.cells() ? collect_all<1>(y) : collect_all<2>(y); }
 
-void Extension::redistribute(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays,
-                             Field& leaves) {
+void Extension::redistribute(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves) {
   const Sweep& cells = packing.cells();
   clear(cells, stays);
   clear(cells, leaves);

@@ -68,8 +68,7 @@ class Extension {
   template <typename FreePart, typename Weights>
   void prepare_with(const FreePart& free_part, const Weights& weights);
   static Line near_sums(const double* in, Index n1, Index n2, Index row, Index first, Index last);
-  static void add_means(const Level& blocks, Index component, Index row, Index column, Index count,
-                        Line& sums);
+  static void add_means(const Level& blocks, Index component, Index row, Index column, Index count, Line& sums);
   void fill_blocks(const double* in, Index component);
   void spread_blocks(Index component);
   template <std::size_t components, typename Take>

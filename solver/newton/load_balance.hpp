@@ -121,8 +121,7 @@ class LoadBalance {
   }
 
   template <typename Direction>
-  bool solve_along(const Eigen::ArrayXd& y, std::span<const Direction* const> w, Coefficients& x,
-                   bool own) const {
+  bool solve_along(const Eigen::ArrayXd& y, std::span<const Direction* const> w, Coefficients& x, bool own) const {
     if (count() == 0) return true;
     if (count() == 1) return solve_one(y, *w[0], x[0]);
     if constexpr (Set::kComponents == 2) {  // scalar fields have one condition
@@ -203,8 +202,7 @@ class LoadBalance {
         const LoadsAlong<M> next = evaluate<M>(y, w, Vector(x + step));
         const double decrease = at.potential - next.potential + load.dot(step);
         const double rounding = kLoadRounding * (std::abs(at.potential) + std::abs(next.potential));
-        accepted = imbalance(next) < kGoodReduction * missing ||
-                   (own && decrease > kArmijo * r.dot(step) + rounding);
+        accepted = imbalance(next) < kGoodReduction * missing || (own && decrease > kArmijo * r.dot(step) + rounding);
         if (!accepted) continue;
         x += step;
         at = next;
@@ -215,11 +213,10 @@ class LoadBalance {
     x_out = x;
     if (imbalance(at) <= kPoorRounding) return true;
     // Where y is all but taken away, as when a load returns to nothing, what is left is its rounding.
-    const double square =
-        set_.sweep().template sum<double>([&](Eigen::Index first, Eigen::Index last, double& sum) {
-          for (Eigen::Index start = first; start < y.size(); start += set_.cells())
-            sum += y.segment(start, last - first).square().sum();
-        });
+    const double square = set_.sweep().template sum<double>([&](Eigen::Index first, Eigen::Index last, double& sum) {
+      for (Eigen::Index start = first; start < y.size(); start += set_.cells())
+        sum += y.segment(start, last - first).square().sum();
+    });
     const double known = kLoadRounding * std::sqrt(square);
     return ((load - at.load).cwiseAbs().array() <= known * majorant.diagonal().array().sqrt()).all();
   }

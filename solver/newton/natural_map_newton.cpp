@@ -89,8 +89,7 @@ class NaturalMapNewton {
       if (settled && summary.gap > options.tolerance && state_.is_certified(options.tolerance, trial_.u)) {
         return stop(q, options, summary, "rounding");
       }
-      const bool enough =
-          state_.program().energy_before > 0.0 && state_.is_certified(options.tolerance, trial_.u);
+      const bool enough = state_.program().energy_before > 0.0 && state_.is_certified(options.tolerance, trial_.u);
       const bool progress = summary.gap < (enough ? 0.5 : 1.0) * best_gap;
       idle_steps = progress ? 0 : idle_steps + 1;
       best_gap = std::min(best_gap, summary.gap);
@@ -184,8 +183,8 @@ class NaturalMapNewton {
     Coefficients loads(state_.balance().count());
     for (Index k = 0; k < loads.size(); ++k) {
       const MotionField& c = *state_.program().imposed[static_cast<std::size_t>(k)].c;
-      loads[k] = state_.sum(
-          [&](Index first, Index last) { return c.dot(first, trial_.q.segment(first, last - first)); });
+      loads[k] =
+          state_.sum([&](Index first, Index last) { return c.dot(first, trial_.q.segment(first, last - first)); });
     }
     return loads;
   }
@@ -236,8 +235,7 @@ class NaturalMapNewton {
   }
 
   /// Ends at an admissible state that no step improves: above the tolerance, or certified within rounding.
-  NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
-                     const std::string& why) {
+  NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary, const std::string& why) {
     if (options.refine_multipliers) refine(q, summary.gap, std::numeric_limits<double>::infinity(), summary);
     summary.gap = state_.relative_gap(q, trial_.u);
     summary.converged = state_.is_certified(options.tolerance, trial_.u);
@@ -253,19 +251,18 @@ class NaturalMapNewton {
 }  // namespace
 
 template <AdmissibleSet Set>
-NewtonSummary minimise(const Set& set, const ConvexProgram& program, LinearOperator& op,
-                       InverseSymbol& symbol, Packing& packing, Eigen::ArrayXd& q,
-                       const Coefficients& multipliers, const NewtonOptions& options) {
+NewtonSummary minimise(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol,
+                       Packing& packing, Eigen::ArrayXd& q, const Coefficients& multipliers,
+                       const NewtonOptions& options) {
   NaturalMapNewton<Set> newton(set, program, op, symbol, packing);
   NewtonSummary summary = newton.run(q, multipliers, options);
   newton.take_fields(summary);
   return summary;
 }
 
-template NewtonSummary minimise(const FrictionDiscs&, const ConvexProgram&, LinearOperator&, InverseSymbol&,
+template NewtonSummary minimise(const FrictionDiscs&, const ConvexProgram&, LinearOperator&, InverseSymbol&, Packing&,
+                                Eigen::ArrayXd&, const Coefficients&, const NewtonOptions&);
+template NewtonSummary minimise(const PositivePressures&, const ConvexProgram&, LinearOperator&, InverseSymbol&,
                                 Packing&, Eigen::ArrayXd&, const Coefficients&, const NewtonOptions&);
-template NewtonSummary minimise(const PositivePressures&, const ConvexProgram&, LinearOperator&,
-                                InverseSymbol&, Packing&, Eigen::ArrayXd&, const Coefficients&,
-                                const NewtonOptions&);
 
 }  // namespace slipstick::solver

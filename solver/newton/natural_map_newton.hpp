@@ -45,12 +45,11 @@ struct NewtonSummary {
 /// 5. The step ends where the energy along it is least; the set is convex. If the energy does not fall the
 ///    step is halved, and at last replaced by a projected gradient step, which always descends. Again from 1.
 ///
-/// Improves q, any field of the right size, until its certificate holds: this rank's rows of it. packing: of
-/// all fields, the contact cells. multipliers: guesses for the imposed conditions, or empty. Compiled for
-/// both sets.
+/// Improves q, any field of the right size, until its certificate holds: this rank's rows of it. packing: of all
+/// fields, the contact cells. multipliers: guesses for the imposed conditions, or empty. Compiled for both sets.
 template <AdmissibleSet Set>
-NewtonSummary minimise(const Set& set, const ConvexProgram& program, LinearOperator& op,
-                       InverseSymbol& symbol, Packing& packing, Eigen::ArrayXd& q,
-                       const Coefficients& multipliers, const NewtonOptions& options);
+NewtonSummary minimise(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol,
+                       Packing& packing, Eigen::ArrayXd& q, const Coefficients& multipliers,
+                       const NewtonOptions& options);
 
 }  // namespace slipstick::solver

@@ -30,14 +30,12 @@ inline double coarse_tolerance(const Grid& grid) {
 }
 
 /// Coarse tractions are solved to this part of their first gap, which is about the error of prolongation:
-/// a smaller one would not spare the next grid a step. Pressures are not, since they decide which cells are
-/// in contact.
+/// a smaller one would not spare the next grid a step. Pressures are not, since they decide which cells are in contact.
 constexpr double kPartOfFirstGap = 0.01;
 
 /// A problem on one grid, for solve_nested().
 template <class Problem>
-concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op,
-                                 NestedSummary& summary) {
+concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op, NestedSummary& summary) {
   { problem.kernel() } -> std::same_as<BlockKernel>;                       // of its operator
   { problem.parities() } -> std::convertible_to<std::span<const Parity>>;  // of its field's components
   { problem.admissible() } -> AdmissibleSet;
@@ -56,9 +54,8 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
 
 /// Solves on one grid, starting at the result's field. The result's fields are packed by problem.packing().
 template <NestedProblem Problem>
-void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem,
-                   const Coefficients& multipliers, NewtonOptions options, bool guessed,
-                   const OnCellsKnown& on_cells_known, NestedSummary& result) {
+void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem, const Coefficients& multipliers,
+                   NewtonOptions options, bool guessed, const OnCellsKnown& on_cells_known, NestedSummary& result) {
   const auto operators = elasticity.make_all(grid, problem.kernel());
   LinearOperator& op = *operators->op;
   int iterations = 0;
@@ -70,8 +67,7 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
     if (on_cells_known) on_cells_known(result.part);
     const auto admissible = problem.admissible();
     result.field = packing.packed(result.field);
-    result.newton =
-        minimise(admissible, program, op, *operators->symbol, packing, result.field, multipliers, options);
+    result.newton = minimise(admissible, program, op, *operators->symbol, packing, result.field, multipliers, options);
     result.safeguards += result.newton.safeguards;
     iterations += result.newton.iterations;
     result.slip = std::move(result.newton.slip);
@@ -131,8 +127,7 @@ template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options, const OnCellsKnown& on_cells_known) {
   NestedSummary result = solve_on_grids(elasticity, grid, problem, options, on_cells_known);
-  for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement})
-    *field = problem.packing().unpacked(*field);
+  for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement}) *field = problem.packing().unpacked(*field);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) share_rows(grid, *field);
   return result;
 }

@@ -81,8 +81,7 @@ class NewtonState {
   /// Starts at the projection of q onto the set, with the imposed loads if a multiplier restores them.
   /// multipliers: guesses, or empty.
   void enter(ArrayXd& q, const Coefficients& multipliers) {
-    multipliers_ =
-        multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
+    multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
     Coefficients x = Coefficients::Zero(balance_.count());
     if (balance_.solve(q, x)) balance_.add(x, q);
     symmetrise(q);
@@ -142,8 +141,7 @@ class NewtonState {
     op_.apply_own(trial.q, trial.u, packing_);
     double after = energy_of(trial.q, trial.u);
     // Energies are known to the rounding of their terms.
-    const double highest =
-        energy_ + kEnergyRounding * std::abs(energy_) + kGapUnits * std::abs(program_.energy_before);
+    const double highest = energy_ + kEnergyRounding * std::abs(energy_) + kGapUnits * std::abs(program_.energy_before);
     const bool lower = after <= highest;
     if (const double part = kIsScalar || !lower ? least_energy_at(q, trial) : 1.0;
         part > kMinPart && part < kNearlyAll) {
@@ -185,8 +183,7 @@ class NewtonState {
       if (program_.energy_before == 0.0) return part;
       // The imposed loads' part is constant but for their rounding, which may be more than is left to gain.
       for (std::size_t k = 0; k < program_.imposed.size(); ++k) {
-        part -= multipliers_[static_cast<Index>(k)] *
-                program_.imposed[k].c->dot(first, q.segment(first, last - first));
+        part -= multipliers_[static_cast<Index>(k)] * program_.imposed[k].c->dot(first, q.segment(first, last - first));
       }
       return part;
     });
@@ -197,14 +194,11 @@ class NewtonState {
   double least_energy_at(const ArrayXd& q, const Trial& trial) const {
     const double slope = sum([&](Index first, Index last) {
       const Index n = last - first;
-      return ((q.segment(first, n) - y_.segment(first, n)) *
-              (trial.q.segment(first, n) - q.segment(first, n)))
-          .sum();
+      return ((q.segment(first, n) - y_.segment(first, n)) * (trial.q.segment(first, n) - q.segment(first, n))).sum();
     });
     const double curvature = sum([&](Index first, Index last) {
       const Index n = last - first;
-      return ((trial.q.segment(first, n) - q.segment(first, n)) *
-              (trial.u.segment(first, n) - u_.segment(first, n)))
+      return ((trial.q.segment(first, n) - q.segment(first, n)) * (trial.u.segment(first, n) - u_.segment(first, n)))
           .sum();
     });
     return -slope / (rho_ * curvature);
@@ -215,10 +209,8 @@ class NewtonState {
     set_.sweep().each_own([&](Index first_cell, Index last_cell) {
       const Index n = last_cell - first_cell;
       for (Index first = first_cell; first < size(); first += set_.cells()) {
-        trial.q.segment(first, n) =
-            q.segment(first, n) + part * (trial.q.segment(first, n) - q.segment(first, n));
-        trial.u.segment(first, n) =
-            u_.segment(first, n) + part * (trial.u.segment(first, n) - u_.segment(first, n));
+        trial.q.segment(first, n) = q.segment(first, n) + part * (trial.q.segment(first, n) - q.segment(first, n));
+        trial.u.segment(first, n) = u_.segment(first, n) + part * (trial.u.segment(first, n) - u_.segment(first, n));
       }
     });
   }

@@ -36,9 +36,8 @@ inline constexpr double kDistrustOfTractions = 1.5;
 /// Most iterations of one linear problem.
 inline constexpr int kInnerIterations = 40;
 
-/// The linear problem of a Newton step: the change of the field in the tangent space of the cells' states
-/// that removes the slip, by conjugate gradients. It uses the memory of the Trial, which is written
-/// afterwards.
+/// The linear problem of a Newton step: the change of the field in the tangent space of the cells' states that removes
+/// the slip, by conjugate gradients. It uses the memory of the Trial, which is written afterwards.
 template <AdmissibleSet Set>
 class TangentProblem {
  public:
@@ -72,8 +71,7 @@ class TangentProblem {
     const std::vector<Condition>& imposed = state.program().imposed;
     std::array<const MotionField*, kMaxConditions> conditions{};
     std::ranges::transform(imposed, conditions.begin(), &Condition::c);
-    has_tangents_ =
-        constraints_.prepare(map, std::span(conditions).first(imposed.size()), fields.d, fields.y);
+    has_tangents_ = constraints_.prepare(map, std::span(conditions).first(imposed.size()), fields.d, fields.y);
     prepared_at_ = state.multipliers();
   }
 
@@ -91,8 +89,7 @@ class TangentProblem {
       const double reduction = changed_ > 0 ? kLooseReduction : kPartOfNeeded * needed;
       return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
     }
-    const double changed =
-        static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
+    const double changed = static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
     const double reduction =
         std::max(kPartOfNeeded * needed, (kIsScalar ? kDistrust : kDistrustOfTractions) * std::sqrt(changed));
     return {std::clamp(reduction, kTightReduction, kLooseReductionOfRagged), iterations};
@@ -124,8 +121,7 @@ class TangentProblem {
     const auto tangents = constraints_.tangents();
     std::array<const CgTangent*, kMaxConditions> directions{};
     std::ranges::transform(tangents, directions.begin(), [](const CgTangent& tangent) { return &tangent; });
-    if (!state.balance().template solve_along<CgTangent>(trial, std::span(directions).first(tangents.size()),
-                                                         x))
+    if (!state.balance().template solve_along<CgTangent>(trial, std::span(directions).first(tangents.size()), x))
       return false;
     state.each([&](Index first, Index last) {
       for (std::size_t k = 0; k < tangents.size(); ++k) {
@@ -144,15 +140,12 @@ class TangentProblem {
  private:
   static constexpr bool kIsScalar = NewtonState<Set>::kIsScalar;
 
-  TangentPreconditioner preconditioner() {
-    return {symbol_, space_, packing_, extends_ ? &extension_ : nullptr};
-  }
+  TangentPreconditioner preconditioner() { return {symbol_, space_, packing_, extends_ ? &extension_ : nullptr}; }
 
   CgWorkspace work(Trial& scratch) { return {d_, scratch.u, scratch.q}; }
 
-  /// True if the tangents of an earlier step are near enough: few cells have changed their state in the last
-  /// step, and the multipliers, with them slip and stiffness, have changed little since the tangents were
-  /// made.
+  /// True if the tangents of an earlier step are near enough: few cells have changed their state in the last step, and
+  /// the multipliers, with them slip and stiffness, have changed little since the tangents were made.
   bool tangents_are_near(const NewtonState<Set>& state) const {
     return static_cast<double>(changed_) <= kFewChanges * static_cast<double>(space_.free.count()) &&
            (state.multipliers() - prepared_at_).norm() <= kNearMultipliers * state.multipliers().norm();
@@ -165,8 +158,7 @@ class TangentProblem {
       state.write_slip(first, last, slip);
       auto s = slip.segment(first, n);
       if (!kIsScalar) {
-        s += space_.stiffness.segment(first % state.set().cells(), n).template cast<double>() *
-             q.segment(first, n);
+        s += space_.stiffness.segment(first % state.set().cells(), n).template cast<double>() * q.segment(first, n);
       }
       r_.segment(first, n) = -s;
     });
@@ -178,8 +170,7 @@ class TangentProblem {
     constraints_.add_with_values(preconditioner(), loads, x_);
     map.transform(x_, Ax);
     space_.free.each([&](Index first, Index last) { map.store(first, last, x_, Ax); });
-    state.each(
-        [&](Index first, Index last) { r_.segment(first, last - first) -= Ax.segment(first, last - first); });
+    state.each([&](Index first, Index last) { r_.segment(first, last - first) -= Ax.segment(first, last - first); });
   }
 
   InverseSymbol& symbol_;

@@ -147,7 +147,7 @@ struct TangentSpace {
     });
   }
 
-  Field f1, f2;  ///< unit vector of a cell on a line, else zero; scalars have only f1: 1 where free
+  Field f1, f2;                 ///< unit vector of a cell on a line, else zero; scalars have only f1: 1 where free
   Eigen::ArrayXf stiffness;     ///< lambda = |s|/(mu p) in slip cells, above zero; zero in stick cells
   Eigen::ArrayXf scale, shift;  ///< of the preconditioner
   Sweep free;                   ///< the cells that may move
@@ -174,9 +174,9 @@ struct TangentOperator {
     Packet::each(first, last, [&]<typename Value>(Index i, Value) {
       const auto get = [](const auto& field, Index at) { return TangentSpace::get<Value>(field, at); };
       const Value stiffness = get(space.stiffness, i);
-      space.put(y, i,
-                space.projected<Value>(i, get(y, i) + stiffness * get(x, i),
-                                       get(y, i + n) + stiffness * get(x, i + n)));
+      space.put(
+          y, i,
+          space.projected<Value>(i, get(y, i) + stiffness * get(x, i), get(y, i + n) + stiffness * get(x, i + n)));
     });
   }
 };

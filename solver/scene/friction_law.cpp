@@ -17,8 +17,7 @@ using Eigen::ArrayXd;
 namespace {
 
 /// By FrictionKind.
-constexpr std::array kLaws{"Coulomb's law", "Tresca's law", "the capped law of friction",
-                           "the power law of friction"};
+constexpr std::array kLaws{"Coulomb's law", "Tresca's law", "the capped law of friction", "the power law of friction"};
 constexpr std::array kBounds{"mu p", "the shear strength", "mu p or the shear strength", "k p^n"};
 
 }  // namespace
@@ -67,9 +66,8 @@ FrictionLaw with_factors(FrictionLaw law, const Grid& grid) {
   for (Index i = 0; i < grid.n1; ++i) {
     for (Index j = 0; j < grid.n2; ++j) {
       if (map(i, j) >= 0.0 && std::isfinite(map(i, j))) continue;
-      throw InputError(
-          law.map.string(),
-          fmt::format("row {}, column {}: {}; allowed: zero or positive, finite", i + 1, j + 1, map(i, j)));
+      throw InputError(law.map.string(), fmt::format("row {}, column {}: {}; allowed: zero or positive, finite", i + 1,
+                                                     j + 1, map(i, j)));
     }
   }
   if ((map == 1.0).all()) {
@@ -80,8 +78,7 @@ FrictionLaw with_factors(FrictionLaw law, const Grid& grid) {
   return law;
 }
 
-FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to,
-                      const std::array<double, 2>& centre) {
+FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to, const std::array<double, 2>& centre) {
   if (!law.factors) return law;
   law.factors = std::make_shared<const ArrayXd>(means_on(to, from, *law.factors, centre));
   return law;

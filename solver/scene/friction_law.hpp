@@ -22,14 +22,13 @@ std::string bound_text(FrictionKind kind);
 /// at the bound it opposes the slip. Stresses in Pa, or in any one unit.
 struct FrictionLaw {
   FrictionLaw() = default;
-  FrictionLaw(double mu)
-      : coefficient(mu) {}  // NOLINT(google-explicit-constructor): Coulomb's law is a number
+  FrictionLaw(double mu) : coefficient(mu) {}  // NOLINT(google-explicit-constructor): Coulomb's law is a number
 
   FrictionKind kind = FrictionKind::coulomb;
-  double coefficient = 0.0;     ///< coulomb, capped: mu; power: k, stress^(1 - exponent)
-  double shear_strength = 0.0;  ///< tresca, capped
-  double exponent = 1.0;        ///< power: n
-  std::filesystem::path map{};  ///< file of a factor of the bound for each cell; empty: none
+  double coefficient = 0.0;                         ///< coulomb, capped: mu; power: k, stress^(1 - exponent)
+  double shear_strength = 0.0;                      ///< tresca, capped
+  double exponent = 1.0;                            ///< power: n
+  std::filesystem::path map{};                      ///< file of a factor of the bound for each cell; empty: none
   std::shared_ptr<const Eigen::ArrayXd> factors{};  ///< what it holds; null: 1 everywhere
 
   bool is_coulomb() const { return kind == FrictionKind::coulomb && map.empty() && !factors; }
@@ -59,7 +58,6 @@ FrictionLaw with_factors(FrictionLaw law, const Grid& grid);
 
 /// A law with a map for one grid, with a map for another: each cell takes the mean over it. centre: of `to`
 /// in the coordinates of `from`, in the unit of both.
-FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to,
-                      const std::array<double, 2>& centre = {});
+FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to, const std::array<double, 2>& centre = {});
 
 }  // namespace slipstick::solver

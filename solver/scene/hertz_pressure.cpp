@@ -21,8 +21,7 @@ struct Curvatures {
   double along_1;
   double along_2;
 };
-/// Bound of the axis ratio's square, within which Carlson's integral and its products stay in double
-/// precision.
+/// Bound of the axis ratio's square, within which Carlson's integral and its products stay in double precision.
 constexpr double kMinSquare = 1e-180;
 
 Curvatures direction_integrals(double axis_ratio) {
@@ -67,9 +66,8 @@ double cap_volume(double x, double y) {
 }  // namespace
 
 HertzContact hertz_contact(double load, double radius_1, double radius_2, double effective_modulus) {
-  // The displacement is p0/(2 E*) times the integral over theta of (C + B^2/A')/sqrt(A'), where the pressure
-  // squared along a line from (x1, x2) is p0^2 (C - 2 B r - A' r^2) and A' = A/a2^2. Its curvature along x1
-  // is 1/R1.
+  // The displacement is p0/(2 E*) times the integral over theta of (C + B^2/A')/sqrt(A'), where the pressure squared
+  // along a line from (x1, x2) is p0^2 (C - 2 B r - A' r^2) and A' = A/a2^2. Its curvature along x1 is 1/R1.
   const double axis_ratio = find_axis_ratio(radius_1 / radius_2);
   const double along_1 = direction_integrals(axis_ratio).along_1;
   // 1/R1 = p0 a2 along_1/(E* a1^2) with p0 = 3 W/(2 pi a1 a2):
@@ -94,9 +92,8 @@ Eigen::ArrayXd hertz_cell_averages(const HertzContact& contact, const Grid& grid
     const double x = std::abs(grid.x1(i)) / contact.semi_axis_1;
     for (Index j = 0; j < grid.n2; ++j) {
       const double y = std::abs(grid.x2(j)) / contact.semi_axis_2;
-      const double volume =
-          (cap_volume(x + 0.5 * h1, y + 0.5 * h2) + cap_volume(x - 0.5 * h1, y - 0.5 * h2)) -
-          (cap_volume(x - 0.5 * h1, y + 0.5 * h2) + cap_volume(x + 0.5 * h1, y - 0.5 * h2));
+      const double volume = (cap_volume(x + 0.5 * h1, y + 0.5 * h2) + cap_volume(x - 0.5 * h1, y - 0.5 * h2)) -
+                            (cap_volume(x - 0.5 * h1, y + 0.5 * h2) + cap_volume(x + 0.5 * h1, y - 0.5 * h2));
       // A cell outside the ellipse: what is left of the difference is rounding.
       const double nearest1 = std::max(x - 0.5 * h1, 0.0);
       const double nearest2 = std::max(y - 0.5 * h2, 0.0);

@@ -13,10 +13,9 @@ struct HertzContact {
   double peak_pressure;
 };
 
-/// Gap x1^2/(2 R1) + x2^2/(2 R2) pressed by W on an elastic pair of modulus E*. Consistent units, all
-/// positive. The potential of the pressure along each chord is elementary (Johnson 1985, section 3.7), and
-/// what is left, an integral over the direction, is periodic and positive: the trapezoidal rule has it to
-/// rounding.
+/// Gap x1^2/(2 R1) + x2^2/(2 R2) pressed by W on an elastic pair of modulus E*. Consistent units, all positive. The
+/// potential of the pressure along each chord is elementary (Johnson 1985, section 3.7), and what is left, an integral
+/// over the direction, is periodic and positive: the trapezoidal rule has it to rounding.
 HertzContact hertz_contact(double load, double radius_1, double radius_2, double effective_modulus);
 
 /// That pressure at cell centres.

@@ -9,9 +9,7 @@
 namespace slipstick::solver {
 namespace {
 
-bool is_rounding(double value, double scale) {
-  return value != 0.0 && std::abs(value) <= kLastDigits * scale;
-}
+bool is_rounding(double value, double scale) { return value != 0.0 && std::abs(value) <= kLastDigits * scale; }
 
 double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / body.young_modulus; }
 
@@ -22,8 +20,7 @@ std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   if (scene.grid.extent || !load || !is_bare(scene)) return scene.grid.extent;
   const auto plane = [](const Material& body) { return (1.0 - body.poisson_ratio) * compliance(body); };
   try {
-    return expected_half_sides(scene.surfaces, scene.combine, *load,
-                               1.0 / (plane(scene.upper) + plane(scene.lower)));
+    return expected_half_sides(scene.surfaces, scene.combine, *load, 1.0 / (plane(scene.upper) + plane(scene.lower)));
   } catch (const std::domain_error&) {
     return std::nullopt;
   } catch (const std::invalid_argument&) {
@@ -39,9 +36,8 @@ double forces_over_torsion(const Scene& scene, double reach) {
   for (const Step& step : scene.steps) {
     force = std::max(force, std::hypot(step.force[0], step.force[1]));
     const auto ratio = value_if<MomentRatio>(step.torsion);
-    const double limit = scene.contact.friction.is_coulomb()
-                             ? scene.contact.friction.coefficient * step.normal.value_or(0.0)
-                             : 0.0;
+    const double limit =
+        scene.contact.friction.is_coulomb() ? scene.contact.friction.coefficient * step.normal.value_or(0.0) : 0.0;
     const double moment = value_if<Moment>(step.torsion).value_or(0.0) / reach;
     torsion = std::max(torsion, std::abs(ratio ? *ratio * limit : moment));
   }

@@ -53,8 +53,7 @@ std::vector<Wave> waves_of(const Roughness& roughness) {
   return waves;
 }
 
-/// In [0, 2 pi), computed from the generator's bits, since the standard's distributions differ between
-/// platforms.
+/// In [0, 2 pi), computed from the generator's bits, since the standard's distributions differ between platforms.
 double draw_phase(std::mt19937_64& generator) {
   return 2.0 * std::numbers::pi * std::ldexp(static_cast<double>(generator() >> 11), -53);
 }
@@ -122,8 +121,7 @@ ArrayXd roughness_heights(const Roughness& roughness, const Grid& grid) {
 RoughnessSpectrum measure_spectrum(const Roughness& roughness) {
   const Index n = fast_length(2 * most_waves(roughness) + 2);
   const double spacing = roughness.period / static_cast<double>(n);
-  const ArrayXd power =
-      series_power(roughness_heights(roughness, {n, n, spacing, spacing}), static_cast<int>(n));
+  const ArrayXd power = series_power(roughness_heights(roughness, {n, n, spacing, spacing}), static_cast<int>(n));
   const double fundamental = 2.0 * std::numbers::pi / roughness.period;
 
   struct Ring {
@@ -152,10 +150,8 @@ RoughnessSpectrum measure_spectrum(const Roughness& roughness) {
   }
 
   if (rings.empty()) throw std::domain_error("a roughness without finite heights");
-  RoughnessSpectrum spectrum{.rms_height = std::sqrt(square_height),
-                             .rms_slope = std::sqrt(square_slope),
-                             .hurst = 0.0,
-                             .rings = {}};
+  RoughnessSpectrum spectrum{
+      .rms_height = std::sqrt(square_height), .rms_slope = std::sqrt(square_slope), .hurst = 0.0, .rings = {}};
   ArrayXd log_wavelength(static_cast<Index>(rings.size()));
   ArrayXd log_power(log_wavelength.size());
   for (const auto& [radius, ring] : rings) {

@@ -11,9 +11,8 @@ namespace slipstick::solver {
 /// Waves that fit into a period along one axis, period/shortest, are at most this many: a megapixel of them.
 constexpr double kMaxWaves = 1024.0;
 
-/// Heights at cell centres, in the unit of the roughness and of the grid: the same surface on every mesh and
-/// platform. Phases are drawn from long waves to short ones, so that a smaller `shortest` adds waves to those
-/// that are there.
+/// Heights at cell centres, in the unit of the roughness and of the grid: the same surface on every mesh and platform.
+/// Phases are drawn from long waves to short ones, so that a smaller `shortest` adds waves to those that are there.
 Eigen::ArrayXd roughness_heights(const Roughness& roughness, const Grid& grid);
 
 /// Power per wave vector, averaged over a ring of wave vectors one fundamental one wide: its integral over

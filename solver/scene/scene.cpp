@@ -48,8 +48,7 @@ Surface read_surface(SceneReader& reader, const std::string& table) {
   return surface;
 }
 
-/// The shapes of a body: one by the keys of its table, or several by tables [[upper.shape]] with the same
-/// keys.
+/// The shapes of a body: one by the keys of its table, or several by tables [[upper.shape]] with the same keys.
 std::vector<Surface> read_surfaces(SceneReader& reader, const std::string& body) {
   const std::string shapes = body + ".shape";
   if (!reader.is_array(shapes)) return {read_surface(reader, body)};
@@ -67,12 +66,10 @@ std::vector<Surface> read_surfaces(SceneReader& reader, const std::string& body)
 /// The shapes of both bodies. The gap is the sum of the two bodies' gaps.
 void read_shapes(SceneReader& reader, Scene& scene) {
   scene.surfaces = read_surfaces(reader, "upper");
-  if (scene.surfaces.size() > 1)
-    scene.combine = reader.choice_or("upper.combine", scene.combine, kCombinations);
+  if (scene.surfaces.size() > 1) scene.combine = reader.choice_or("upper.combine", scene.combine, kCombinations);
   if (!reader.has("lower.shape")) return;
   const std::vector<Surface> lower = read_surfaces(reader, "lower");
-  if (scene.combine == Combine::nearest)
-    reader.fail("lower.shape", "(given)", "none with upper.combine = \"nearest\"");
+  if (scene.combine == Combine::nearest) reader.fail("lower.shape", "(given)", "none with upper.combine = \"nearest\"");
   scene.surfaces.insert(scene.surfaces.end(), lower.begin(), lower.end());
 }
 
@@ -88,13 +85,11 @@ Material read_material(SceneReader& reader, const std::string& body) {
   const std::optional<double> yield_stress = reader.find_number(body + ".yield_stress");
   if (reader.flag_or(body + ".rigid", false)) {
     for (const char* key : {".young_modulus", ".poisson_ratio"}) {
-      if (reader.has(body + key))
-        reader.fail(body + ".rigid", "true", fmt::format("no {}{} with it", body, key));
+      if (reader.has(body + key)) reader.fail(body + ".rigid", "true", fmt::format("no {}{} with it", body, key));
     }
     return {std::numeric_limits<double>::infinity(), 0.0, coating, yield_stress};
   }
-  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio"), coating,
-          yield_stress};
+  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio"), coating, yield_stress};
 }
 
 Layer read_layer(SceneReader& reader) {
@@ -128,8 +123,7 @@ FrictionLaw read_friction(SceneReader& reader) {
   FrictionLaw law;
   law.kind = reader.choice_or("contact.friction_law", law.kind, kFrictionLaws);
   const bool tresca = law.kind == FrictionKind::tresca;
-  if (law.kind != FrictionKind::capped)
-    reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
+  if (law.kind != FrictionKind::capped) reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
   refuse_numbers_of_other_laws(reader, law.kind);
   if (!tresca) law.coefficient = reader.number("contact.friction");
   if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
@@ -143,8 +137,7 @@ FrictionLaw read_friction(SceneReader& reader) {
 }
 
 /// Reads the torsion from a table; where the table has none, the torsion is as before.
-void read_torsion(SceneReader& reader, const std::string& table, Step& step,
-                  std::optional<TorsionLoad>& torsion) {
+void read_torsion(SceneReader& reader, const std::string& table, Step& step, std::optional<TorsionLoad>& torsion) {
   const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
   reader.prefer_overridden(keys);
   const auto ratio = reader.find_number(keys[0]);
@@ -212,8 +205,7 @@ void require_same_loads(SceneReader& reader, const Step& before, const Step& ste
   }
 }
 
-/// The step of [load], or the steps of [[step]]: each starts from the loads of the step before, the first
-/// from [load].
+/// The step of [load], or the steps of [[step]]: each starts from the loads of the step before, the first from [load].
 std::vector<Step> read_steps(SceneReader& reader, bool needs_normal, std::size_t& first_points) {
   ReadStep load;
   read_loads(reader, "load", load);
@@ -268,9 +260,7 @@ bool is_coated(const Scene& scene) { return scene.upper.coating || scene.lower.c
 
 bool is_bare(const Scene& scene) { return scene.layer.kind == nullptr && !is_coated(scene); }
 
-bool brings_translation(const Step& step) {
-  return step.displacement || step.force != std::array<double, 2>{};
-}
+bool brings_translation(const Step& step) { return step.displacement || step.force != std::array<double, 2>{}; }
 
 Step on_the_way(const Step& before, const Step& step, double part) {
   Step at = step;
@@ -285,8 +275,7 @@ Step on_the_way(const Step& before, const Step& step, double part) {
   for (std::size_t i = 0; i < 2; ++i) {
     at.force[i] = mix(before.force[i], step.force[i]);
     if (step.displacement)
-      (*at.displacement)[i] =
-          mix(before.displacement ? (*before.displacement)[i] : 0.0, (*step.displacement)[i]);
+      (*at.displacement)[i] = mix(before.displacement ? (*before.displacement)[i] : 0.0, (*step.displacement)[i]);
   }
   return at;
 }
@@ -333,8 +322,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
 
   scene.contact.friction = read_friction(reader);
   scene.contact.pressure = reader.choice_or("contact.pressure", scene.contact.pressure, kPressureModels);
-  if (scene.contact.pressure == PressureModel::file)
-    scene.contact.pressure_file = reader.path("contact.pressure_file");
+  if (scene.contact.pressure == PressureModel::file) scene.contact.pressure_file = reader.path("contact.pressure_file");
   scene.contact.coupling = reader.choice_or("contact.coupling", scene.contact.coupling, kCouplings);
 
   scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file, scene.first_points);
@@ -350,8 +338,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.solver.method = reader.choice_or("solver.method", scene.solver.method, kMethods);
   if (!reader.text_or("solver.program", "").empty()) scene.solver.program = reader.path("solver.program");
   scene.solver.model = reader.choice_or("solver.model", scene.solver.model, kModels);
-  scene.solver.cell_traction =
-      reader.choice_or("solver.cell_traction", scene.solver.cell_traction, kCellTractions);
+  scene.solver.cell_traction = reader.choice_or("solver.cell_traction", scene.solver.cell_traction, kCellTractions);
   scene.solver.op = reader.choice_or("solver.operator", scene.solver.op, kOperators);
   scene.solver.tolerance = reader.number_or("solver.tolerance", scene.solver.tolerance);
   scene.solver.max_iterations =

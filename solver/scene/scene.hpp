@@ -128,8 +128,7 @@ struct SolverSettings {
   int max_iterations = 5000;
   int substeps = 1;  ///< parts into which each step's change of load is divided
   int threads = 0;   ///< of one solve; 0: chosen by the number of cells, at most one for each processor
-  /// 0: round to nearest; otherwise rounding is random with this seed, which shows the digits that depend on
-  /// it.
+  /// 0: round to nearest; otherwise rounding is random with this seed, which shows the digits that depend on it.
   std::int64_t rounding_seed = 0;
   std::optional<double> memory_limit = {};  ///< bytes; none: the memory that the machine has free
 };

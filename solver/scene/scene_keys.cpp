@@ -28,8 +28,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   const Shapes map{"height_map"};
   const Shapes with_axis = words_with_axis();
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& otherwise,
-                       const Range& allowed, const std::string& meaning, const Shapes& shapes,
-                       KeyType type = kNumber) {
+                       const Range& allowed, const std::string& meaning, const Shapes& shapes, KeyType type = kNumber) {
     keys.push_back({at + name, type, unit, otherwise, allowed, meaning, shapes});
   };
   const auto add_numbers = [&](const auto& picked) {
@@ -50,19 +49,18 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
       "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
   add("at", "m", shown(surface.at), kFinite, "Position of the shape's axis.", with_axis, KeyType::pair);
-  add("angle", "rad", shown(surface.angle), kFinite,
-      "From x1 to the shape's first axis, positive towards x2.", with_axis);
+  add("angle", "rad", shown(surface.angle), kFinite, "From x1 to the shape's first axis, positive towards x2.",
+      with_axis);
   add("file", "", kRequired, kAny,
       "Heights, one a cell, larger where further away: a CSV matrix with a line for each x1, or the HDF5 "
       "dataset `height`.",
       map, KeyType::file);
   add("spacing", "m", kRequired, kPositive, "Distance of the file's samples.", map, KeyType::pair);
-  add("unit", "", word_of(kHeightUnits, surface.map.unit), one_of(kHeightUnits),
-      "Unit of the file's heights.", map, kWord);
+  add("unit", "", word_of(kHeightUnits, surface.map.unit), one_of(kHeightUnits), "Unit of the file's heights.", map,
+      kWord);
   add("seed", "", kRequired, kSeeds, "Draws the phases of the random surface.", rough);
   add_numbers([](const ShapeNumber& number) { return number.rough != nullptr; });
-  add("shortest", "m", kRequired,
-      depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
+  add("shortest", "m", kRequired, depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
       "Shortest wavelength.", rough);
   add("period", "m", "4 times longest", depending("at least longest, finite"),
       "Length after which the surface repeats itself.", rough);
@@ -88,8 +86,8 @@ void add_body(SettingKeys& keys, const std::string& table) {
 void add_layer(SettingKeys& keys) {
   std::string meaning = "The layer between the bodies: none";
   for (const LawKind& kind : law_kinds()) meaning += fmt::format(", or {} ({})", kind.meaning, kind.word);
-  keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
-                  meaning + "."});
+  keys.push_back(
+      {"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()), meaning + "."});
   for (const LawKind& kind : law_kinds()) {
     for (const LawParameter& parameter : kind.parameters) {
       keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,
@@ -106,8 +104,8 @@ void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
   const SettingKeys loads{
       {at + "normal", kNumber, "N", first(kRequired), kPositive,
        "Normal load; of a pressure from a file it may be left out."},
-      {at + "moment_ratio", kNumber, "", first("0 with a force, a displacement or steps; otherwise required"),
-       kRatio, "Moment over the limit moment of this pressure and mesh. One of this and the next two."},
+      {at + "moment_ratio", kNumber, "", first("0 with a force, a displacement or steps; otherwise required"), kRatio,
+       "Moment over the limit moment of this pressure and mesh. One of this and the next two."},
       {at + "moment", kNumber, "N m", first("none"), kFinite, "Moment about the grid's origin."},
       {at + "twist", kNumber, "rad", first("none"), kFinite,
        "Imposed twist instead of a moment, counted from the first step: `twist_angle` of a result, whose "
@@ -124,19 +122,17 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
   const SettingKeys contact{
       {"contact.friction", kNumber, "", "required but with friction_law = \"tresca\"", kNotNegative,
        "Coefficient of friction mu; with friction_law = \"power\" k, Pa^(1 - n)."},
-      {"contact.friction_law", kWord, "", word_of(kFrictionLaws, scene.contact.friction.kind),
-       one_of(kFrictionLaws),
+      {"contact.friction_law", kWord, "", word_of(kFrictionLaws, scene.contact.friction.kind), one_of(kFrictionLaws),
        "The shear that friction carries under a pressure p: mu p (coulomb); the shear strength (tresca); the "
        "lesser of the two (capped); k p^n (power)."},
-      {"contact.shear_strength", kNumber, "Pa", "required with friction_law = \"tresca\" or \"capped\"",
-       kPositive, "Largest shear that the interface carries. Only for tresca and capped."},
+      {"contact.shear_strength", kNumber, "Pa", "required with friction_law = \"tresca\" or \"capped\"", kPositive,
+       "Largest shear that the interface carries. Only for tresca and capped."},
       {"contact.friction_exponent", kNumber, "", "required with friction_law = \"power\"", kFrictionExponent,
        "Exponent n of the pressure. Only for power."},
       {"contact.friction_map", KeyType::file, "", "\"\"", kAny,
        "Factors of the friction, one a cell: a CSV matrix with a line for each x1, or the HDF5 dataset "
        "`friction`. Empty: 1 everywhere."},
-      {"contact.pressure", kWord, "", word_of(kPressureModels, scene.contact.pressure),
-       one_of(kPressureModels),
+      {"contact.pressure", kWord, "", word_of(kPressureModels, scene.contact.pressure), one_of(kPressureModels),
        "Where the pressure comes from: solved on the same grid, Hertz's at cell centres, Hertz's averaged "
        "over each cell, a file."},
       {"contact.pressure_file", KeyType::file, "", "required with pressure = \"file\"", kAny,
@@ -169,8 +165,7 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"solver.model", kWord, "", word_of(kModels, scene.solver.model), one_of(kModels),
        "auto: use symmetry and the contact's size to solve fewer cells; full: the whole grid; exact: no "
        "grid, for a scene that has an exact answer."},
-      {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.solver.cell_traction),
-       one_of(kCellTractions),
+      {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.solver.cell_traction), one_of(kCellTractions),
        "constant: the traction is constant over each cell; smooth: the number is the value at the cell's "
        "centre of a smooth traction, which gives smaller errors where the pressure falls to zero at the "
        "contact's edge."},
@@ -180,21 +175,19 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"solver.threads", kNumber, "", shown(scene.solver.threads), kThreads,
        "Threads of one solve, which change no digit. 0: one a processor where the part of the grid that is "
        "solved has many cells, 32,768 for each thread; one for each of many solves (studies, gates)."},
-      {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.solver.rounding_seed)),
-       kRoundingSeeds,
+      {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.solver.rounding_seed)), kRoundingSeeds,
        "0: round to nearest; otherwise every operation is rounded at random with this seed."}};
   keys.insert(keys.end(), solver.begin(), solver.end());
 }
 
 SettingKeys make_scene_keys() {
   const Scene scene;
-  SettingKeys keys{
-      {"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
-      {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
-       "Repetitions of all steps; steps times cycles is limited."},
-      {"units", kWord, "", word_of(kUnitSets, 0), one_of(kUnitSets),
-       "Units of all numbers of the scene: m, N and Pa, or mm, N and MPa, with N mm for moments. A "
-       "text with a unit, as in radius = \"10 mm\", is in its own unit."}};
+  SettingKeys keys{{"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
+                   {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
+                    "Repetitions of all steps; steps times cycles is limited."},
+                   {"units", kWord, "", word_of(kUnitSets, 0), one_of(kUnitSets),
+                    "Units of all numbers of the scene: m, N and Pa, or mm, N and MPa, with N mm for moments. A "
+                    "text with a unit, as in radius = \"10 mm\", is in its own unit."}};
   add_shape(keys, "upper");
   keys.push_back({"upper.combine", kWord, "", word_of(kCombinations, scene.combine), one_of(kCombinations),
                   "How several shapes make one surface: their gaps add up, or each point has the nearest. "
@@ -212,11 +205,9 @@ SettingKeys make_scene_keys() {
   keys.push_back({"step", KeyType::tables, "", "the loads of `[load]`, at once",
                   depending(fmt::format("at most {} tables", kMaxSteps)),
                   "Tables `[[step]]`: a history, whose steps are solved one after another."});
-  keys.push_back(
-      {"step.name", KeyType::text, "", "the step's number", kAny, "Names the step in the result."});
-  keys.push_back(
-      {"step.points", kNumber, "", "1", kPoints,
-       "Equal parts in which the step's loads are brought, each with results and fields as a step."});
+  keys.push_back({"step.name", KeyType::text, "", "the step's number", kAny, "Names the step in the result."});
+  keys.push_back({"step.points", kNumber, "", "1", kPoints,
+                  "Equal parts in which the step's loads are brought, each with results and fields as a step."});
   add_loads(keys, "step", true);
   add_grid_and_solver(keys, scene);
   return keys;

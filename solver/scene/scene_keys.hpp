@@ -37,11 +37,9 @@ inline const Words<OperatorKind> kOperators{
 inline const Words<Method> kMethods{{"coulomb", Method::coulomb}, {"paper", Method::paper}};
 inline const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
-inline const Words<CellTraction> kCellTractions{{"constant", CellTraction::constant},
-                                                {"smooth", CellTraction::smooth}};
+inline const Words<CellTraction> kCellTractions{{"constant", CellTraction::constant}, {"smooth", CellTraction::smooth}};
 
-inline const Range kRatio{"above -1 and below 1 (1 is gross slip)",
-                          [](double x) { return x > -1.0 && x < 1.0; }};
+inline const Range kRatio{"above -1 and below 1 (1 is gross slip)", [](double x) { return x > -1.0 && x < 1.0; }};
 inline const Range kPoisson{"above -1, at most 0.5", [](double x) { return x > -1.0 && x <= 0.5; }};
 inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
 /// Cells along a side. Memory ends long before.

@@ -59,12 +59,9 @@ Axes cone_below(const Surface& s, double depth) { return circle(depth / s.slope)
 void flat_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
   write_distance(along, across, gap);
   gap = (gap >= s.inner_radius && gap <= s.radius)
-            .select(ArrayXd::Zero(gap.size()),
-                    ArrayXd::Constant(gap.size(), std::numeric_limits<double>::infinity()));
+            .select(ArrayXd::Zero(gap.size()), ArrayXd::Constant(gap.size(), std::numeric_limits<double>::infinity()));
 }
-Axes flat_punch_contact(const Surface& s, double /*load*/, double /*effective_modulus*/) {
-  return circle(s.radius);
-}
+Axes flat_punch_contact(const Surface& s, double /*load*/, double /*effective_modulus*/) { return circle(s.radius); }
 Axes flat_punch_below(const Surface& s, double /*depth*/) { return circle(s.radius); }
 
 void rounded_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
@@ -99,17 +96,14 @@ Axes power_contact(const Surface& s, double load, double effective_modulus) {
   const double integral = 0.5 * std::sqrt(pi) * std::tgamma(0.5 * n + 1.0) / std::tgamma(0.5 * n + 1.5);
   return circle(std::pow(load / (2.0 * effective_modulus * s.coefficient * n * integral), 1.0 / (n + 1.0)));
 }
-Axes power_below(const Surface& s, double depth) {
-  return circle(std::pow(depth / s.coefficient, 1.0 / s.exponent));
-}
+Axes power_below(const Surface& s, double depth) { return circle(std::pow(depth / s.coefficient, 1.0 / s.exponent)); }
 
 const std::array kKinds{
     ShapeKind{"sphere", Shape::sphere, paraboloid_gap, paraboloid_contact, paraboloid_below},
     ShapeKind{"ellipsoid", Shape::ellipsoid, paraboloid_gap, paraboloid_contact, paraboloid_below},
     ShapeKind{"cone", Shape::cone, cone_gap, cone_contact, cone_below},
     ShapeKind{"flat_punch", Shape::flat_punch, flat_punch_gap, flat_punch_contact, flat_punch_below},
-    ShapeKind{"rounded_punch", Shape::rounded_punch, rounded_punch_gap, rounded_punch_contact,
-              rounded_punch_below},
+    ShapeKind{"rounded_punch", Shape::rounded_punch, rounded_punch_gap, rounded_punch_contact, rounded_punch_below},
     ShapeKind{"power", Shape::power, power_gap, power_contact, power_below},
     ShapeKind{"height_map", Shape::height_map, nullptr, nullptr, nullptr},
     ShapeKind{"roughness", Shape::roughness, nullptr, nullptr, nullptr}};
@@ -200,24 +194,20 @@ const std::vector<ShapeNumber>& shape_numbers() {
     return ShapeNumber{name, unit, allowed, meaning, {Shape::roughness}, nullptr, at};
   };
   static const std::vector<ShapeNumber> numbers{
-      own("radius", "m", kPositive, "Radius of the sphere, or of the punch's face.",
-          {Shape::sphere, Shape::flat_punch}, &Surface::radius),
-      own("radius_1", "m", kPositive, "Radius of curvature along the ellipsoid's first axis.",
-          {Shape::ellipsoid}, &Surface::radius_1),
+      own("radius", "m", kPositive, "Radius of the sphere, or of the punch's face.", {Shape::sphere, Shape::flat_punch},
+          &Surface::radius),
+      own("radius_1", "m", kPositive, "Radius of curvature along the ellipsoid's first axis.", {Shape::ellipsoid},
+          &Surface::radius_1),
       own("radius_2", "m", kPositive, "Radius of curvature along its second axis.", {Shape::ellipsoid},
           &Surface::radius_2),
       own("slope", "", kPositive, "Gap over radius.", {Shape::cone}, &Surface::slope),
-      own("flat_radius", "m", kPositive, "Radius of the flat face.", {Shape::rounded_punch},
-          &Surface::flat_radius),
+      own("flat_radius", "m", kPositive, "Radius of the flat face.", {Shape::rounded_punch}, &Surface::flat_radius),
       own("corner_radius", "m", kPositive,
           "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
           {Shape::rounded_punch}, &Surface::corner_radius),
-      own("exponent", "", kExponent, "The gap is coefficient r^exponent.", {Shape::power},
-          &Surface::exponent),
-      own("coefficient", "m^(1 - exponent)", kPositive, "Factor of that power.", {Shape::power},
-          &Surface::coefficient),
-      rough("hurst", "", kHurst,
-            "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).",
+      own("exponent", "", kExponent, "The gap is coefficient r^exponent.", {Shape::power}, &Surface::exponent),
+      own("coefficient", "m^(1 - exponent)", kPositive, "Factor of that power.", {Shape::power}, &Surface::coefficient),
+      rough("hurst", "", kHurst, "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).",
             &Roughness::hurst),
       rough("rms_slope", "", kPositive, "Root mean square of the gradient's length, over a period.",
             &Roughness::rms_slope),
@@ -259,21 +249,18 @@ std::optional<Grid> height_map_grid(const std::vector<Surface>& surfaces) {
     const auto& heights = surface.map.heights;
     if (heights.rows() != first->map.heights.rows() || heights.cols() != first->map.heights.cols() ||
         surface.map.spacing != first->map.spacing) {
-      throw InputError(
-          surface.map.file.string(),
-          fmt::format("{} x {} heights, {} x {} apart; allowed: {} x {}, {} x {} apart, as in {}",
-                      heights.rows(), heights.cols(), surface.map.spacing[0], surface.map.spacing[1],
-                      first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0],
-                      first->map.spacing[1], first->map.file.string()));
+      throw InputError(surface.map.file.string(),
+                       fmt::format("{} x {} heights, {} x {} apart; allowed: {} x {}, {} x {} apart, as in {}",
+                                   heights.rows(), heights.cols(), surface.map.spacing[0], surface.map.spacing[1],
+                                   first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0],
+                                   first->map.spacing[1], first->map.file.string()));
     }
   }
-  return Grid{first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0],
-              first->map.spacing[1]};
+  return Grid{first->map.heights.rows(), first->map.heights.cols(), first->map.spacing[0], first->map.spacing[1]};
 }
 
-std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces,
-                                                         Combine combine, double load,
-                                                         double effective_modulus) {
+std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces, Combine combine,
+                                                         double load, double effective_modulus) {
   if (surfaces.size() > 1 && combine == Combine::sum) return std::nullopt;
   std::array<double, 2> half_sides{};
   for (const Surface& surface : surfaces) {
@@ -321,8 +308,7 @@ std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& 
 Surface to_dimensionless(Surface surface, double unit) {
   for (double* const length : lengths(surface)) *length = to_dimensionless(*length, unit);
   surface.coefficient = to_dimensionless(surface.coefficient, std::pow(unit, 1.0 - surface.exponent));
-  surface.map.heights =
-      surface.map.heights.unaryExpr([unit](double height) { return to_dimensionless(height, unit); });
+  surface.map.heights = surface.map.heights.unaryExpr([unit](double height) { return to_dimensionless(height, unit); });
   return surface;
 }
 

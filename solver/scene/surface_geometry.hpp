@@ -10,8 +10,7 @@
 #include "solver/input/setting_key.hpp"
 #include "solver/scene/surface.hpp"
 
-/// The properties of each shape, one row of the table in surface_geometry.cpp, and of surfaces of several
-/// shapes.
+/// The properties of each shape, one row of the table in surface_geometry.cpp, and of surfaces of several shapes.
 namespace slipstick::solver {
 
 /// A shape's word, and the formulas of its undeformed gap. Consistent units. The formulas are null where the
@@ -19,8 +18,7 @@ namespace slipstick::solver {
 struct ShapeKind {
   std::string word;
   Shape shape;
-  /// Writes the gap at points along and across the shape's first axis; infinite where the bodies cannot
-  /// touch.
+  /// Writes the gap at points along and across the shape's first axis; infinite where the bodies cannot touch.
   void (*gap)(const Surface& surface, const Eigen::ArrayXd& along, const Eigen::ArrayXd& across,
               Eigen::Ref<Eigen::ArrayXd> gap);
   /// Semi-axes of the contact's ellipse under a normal load, on a pair of effective modulus E*.
@@ -72,16 +70,14 @@ std::optional<Grid> height_map_grid(const std::vector<Surface>& surfaces);
 
 /// Half the sides of a rectangle about the origin that the contact under a load W is expected to fill;
 /// nothing where that is not known before solving: of sums, and of roughness.
-std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces,
-                                                         Combine combine, double load,
-                                                         double effective_modulus);
+std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces, Combine combine,
+                                                         double load, double effective_modulus);
 
 /// Half the sides of a rectangle about the origin beyond which the gap, its least value taken as 0, is
 /// nowhere below a depth; infinite where that is not known: of roughness, of height maps.
 std::array<double, 2> half_sides_below(const std::vector<Surface>& surfaces, Combine combine, double depth);
 
-/// Whether Hertz's theory holds, up to where the contact stands and how it is turned: of one sphere or
-/// ellipsoid.
+/// Whether Hertz's theory holds, up to where the contact stands and how it is turned: of one sphere or ellipsoid.
 bool is_hertzian(const std::vector<Surface>& surfaces);
 
 /// Radii of curvature along x1 and x2 where Hertz's theory holds as it stands: of one sphere or ellipsoid at

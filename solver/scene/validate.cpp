@@ -34,8 +34,7 @@ class Validation {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& key, const std::string& value,
-                           const std::string& allowed) const {
+  [[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& allowed) const {
     if (reader_ != nullptr) reader_->fail(key, value, allowed);
     throw InputError(scene_.source.empty() ? "scene" : scene_.source.string(), key, value, allowed);
   }
@@ -47,8 +46,7 @@ class Validation {
   void check_surfaces() const {
     const auto& surfaces = scene_.surfaces;
     if (surfaces.empty() || surfaces.size() > kMaxShapes) {
-      refuse("upper.shape", fmt::format("{} shapes", surfaces.size()),
-             fmt::format("from 1 to {}", kMaxShapes));
+      refuse("upper.shape", fmt::format("{} shapes", surfaces.size()), fmt::format("from 1 to {}", kMaxShapes));
     }
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       const std::string made = surfaces.size() == 1 ? "upper" : fmt::format("upper.shape[{}]", i);
@@ -58,8 +56,7 @@ class Validation {
 
   void check_surface(const std::string& table, const Surface& surface) const {
     for (const ShapeNumber& number : shape_numbers()) {
-      if (number.belongs_to(surface.shape))
-        require(table + "." + number.name, number.of(surface), number.allowed);
+      if (number.belongs_to(surface.shape)) require(table + "." + number.name, number.of(surface), number.allowed);
     }
     if (surface.shape == Shape::flat_punch) {
       require(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
@@ -126,8 +123,7 @@ class Validation {
       }
       for (const double force : step.force) require(step.key + ".force", force, kFinite);
       if (!step.displacement) continue;
-      for (const double displacement : *step.displacement)
-        require(step.key + ".displacement", displacement, kFinite);
+      for (const double displacement : *step.displacement) require(step.key + ".displacement", displacement, kFinite);
       if (step.force != std::array<double, 2>{}) {
         refuse(step.key + ".displacement", "(together with a force)", "one of force, displacement");
       }
@@ -135,8 +131,7 @@ class Validation {
   }
 
   void check_grid() const {
-    const bool as_samples =
-        find_height_map(scene_.surfaces) != nullptr && scene_.grid.cells == std::array<Index, 2>{};
+    const bool as_samples = find_height_map(scene_.surfaces) != nullptr && scene_.grid.cells == std::array<Index, 2>{};
     for (const Index cells : scene_.grid.cells) {
       if (!as_samples) require("grid.cells", static_cast<double>(cells), kCells);
     }
@@ -162,14 +157,12 @@ class Validation {
              "auto, none, pressure (shear changes a pressure only where that is solved: "
              "contact.pressure = \"solved\")");
     }
-    const auto is_rigid = [](const Material& body) {
-      return std::isinf(body.young_modulus) && !body.coating;
-    };
+    const auto is_rigid = [](const Material& body) { return std::isinf(body.young_modulus) && !body.coating; };
     if (is_rigid(scene_.upper) && is_rigid(scene_.lower)) {
       refuse("lower.rigid", "true", "false, since the upper body is rigid");
     }
-    const bool asks_hertz = scene_.contact.pressure == PressureModel::hertz ||
-                            scene_.contact.pressure == PressureModel::hertz_averaged;
+    const bool asks_hertz =
+        scene_.contact.pressure == PressureModel::hertz || scene_.contact.pressure == PressureModel::hertz_averaged;
     if (asks_hertz && !is_bare(scene_)) {
       refuse("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
              "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
@@ -209,8 +202,7 @@ Range period_for(double longest) {
 
 Range shortest_for(double longest, double period) {
   const double least = period / kMaxWaves;
-  return {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}", kMaxWaves, least,
-                      0.5 * longest),
+  return {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}", kMaxWaves, least, 0.5 * longest),
           [longest, least](double x) { return x >= least && x <= 0.5 * longest; }};
 }
 

@@ -45,8 +45,7 @@ using Rows = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 
 /// A component with `reach` more rows and columns on each side: mirrored across a quadrant's axes, else zero.
 Rows padded(const Grid& grid, const ArrayXd& q, std::size_t component, Parity parity, Index reach) {
-  const Eigen::Map<const Rows> inside(q.data() + static_cast<Index>(component) * grid.cells(), grid.n1,
-                                      grid.n2);
+  const Eigen::Map<const Rows> inside(q.data() + static_cast<Index>(component) * grid.cells(), grid.n1, grid.n2);
   Rows all = Rows::Zero(grid.n1 + 2 * reach, grid.n2 + 2 * reach);
   all.block(reach, reach, grid.n1, grid.n2) = inside;
   if (!grid.quadrant) return all;
@@ -79,8 +78,8 @@ double energy_of_neighbours(const Grid& grid, const ArrayXd& q, const std::vecto
 
 }  // namespace
 
-Estimate missing_energy(const Elasticity& elasticity, const Grid& grid, const ArrayXd& q,
-                        const BlockKernel& kernel, const Symmetry& symmetry) {
+Estimate missing_energy(const Elasticity& elasticity, const Grid& grid, const ArrayXd& q, const BlockKernel& kernel,
+                        const Symmetry& symmetry) {
   const Grid cells{kNear, kNear, grid.h1, grid.h2};
   const auto components = static_cast<Index>(symmetry.size());
   std::vector<ArrayXd> found;

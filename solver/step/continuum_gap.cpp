@@ -79,8 +79,7 @@ Estimate least_bound(const Grid& fine, const ArrayXd& slip, const ArrayXd& densi
   for (const double limit : {0.5 * largest, 0.2 * largest, 0.08 * largest}) {
     const ArrayXd left = near * (limit / size.max(limit));
     const Estimate open = estimate(fine, (1.0 - left) * density, kThirdDegree);
-    const Estimate norm =
-        dual_norm_squared(fine, left.replicate(2, 1) * slip, torsion_symmetry(), compliance);
+    const Estimate norm = dual_norm_squared(fine, left.replicate(2, 1) * slip, torsion_symmetry(), compliance);
     const Estimate found{open.value + 0.5 * norm.value, open.error + 0.5 * norm.error};
     if (found.value + found.error < least.value + least.error) least = found;
   }
@@ -161,8 +160,7 @@ ContinuumGap continuum_gap(const Scene& scene, const Solution& solution, std::sh
 }
 
 PressureGap pressure_gap(const Scene& scene, const Solution& solution) {
-  if (scene.contact.pressure == PressureModel::file)
-    throw std::invalid_argument("the pressure comes from a file");
+  if (scene.contact.pressure == PressureModel::file) throw std::invalid_argument("the pressure comes from a file");
   const Grid& grid = solution.grid;
   Scene fine = scene;
   fine.solver.cell_traction = CellTraction::constant;
@@ -171,8 +169,7 @@ PressureGap pressure_gap(const Scene& scene, const Solution& solution) {
   fine.grid.extent = {static_cast<double>(grid.n1) * grid.h1, static_cast<double>(grid.n2) * grid.h2};
   const Model model = make_model(fine);
   const Reduction& part = model.pressure_part;
-  const ArrayXd p =
-      part.restricted(spread_to(model.grid, grid, ArrayXd(solution.pressure / model.stress_unit)));
+  const ArrayXd p = part.restricted(spread_to(model.grid, grid, ArrayXd(solution.pressure / model.stress_unit)));
   const ArrayXd h = part.restricted(model.gap);
   Elasticity elasticity = solver::elasticity(fine, model, part);
   elasticity.cache = nullptr;
@@ -207,11 +204,10 @@ double friction_bound_error(const Scene& scene, const Solution& solution, const 
   // Moment over twist and force over displacement of a disc that is bonded to the pair (Mindlin 1949).
   const double rotational = 16.0 / 3.0 * std::pow(radius, 3) / shear;
   const double translational = 8.0 * radius / (shear + normal);
-  const double slip =
-      std::sqrt(2.0 * solution.elastic_energy) + std::sqrt(rotational) * std::abs(solution.twist_angle) +
-      std::sqrt(translational) * std::hypot(solution.displacement[0], solution.displacement[1]);
-  return scene.contact.friction.coefficient * pressure.distance *
-         std::sqrt(std::max(shear, normal) / normal) * slip;
+  const double slip = std::sqrt(2.0 * solution.elastic_energy) +
+                      std::sqrt(rotational) * std::abs(solution.twist_angle) +
+                      std::sqrt(translational) * std::hypot(solution.displacement[0], solution.displacement[1]);
+  return scene.contact.friction.coefficient * pressure.distance * std::sqrt(std::max(shear, normal) / normal) * slip;
 }
 
 }  // namespace slipstick::solver

@@ -23,8 +23,8 @@ double equal_area_radius(const Grid& grid, Index cells) {
 
 /// Cells that counting adds to a contact at each side of its edge.
 double counted_by_side(const Scene& scene) {
-  const bool is_face = std::ranges::any_of(
-      scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
+  const bool is_face =
+      std::ranges::any_of(scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
   // Hertz's pressure is that at the centres of cells.
   if (is_face || scene.contact.pressure == PressureModel::hertz) return 0.0;
   return scene.contact.pressure == PressureModel::hertz_averaged ? kCutBySide : kCountedBySide;
@@ -97,15 +97,13 @@ Certificate certificate_of(const Model& model, const SolvedStep& solved, const L
   const double reach = 0.5 * std::hypot(grid.x1(grid.n1 - 1) - grid.x1(0), grid.x2(grid.n2 - 1) - grid.x2(0));
   const double motion =
       std::hypot(tangential.displacement[0], tangential.displacement[1]) + std::abs(tangential.twist) * reach;
-  return certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
-                 problem.friction_bound, grid, problem.moment.value_or(carried.moment),
+  return certify({tangential.traction, tangential.elastic_displacement, tangential.slip}, problem.friction_bound, grid,
+                 problem.moment.value_or(carried.moment),
                  problem.displacement ? carried.force : problem.force.value_or(std::array{0.0, 0.0}),
-                 model.law->least_eigenvalue(grid.h1, grid.h2),
-                 {problem.energy_before, inherits ? motion : 0.0});
+                 model.law->least_eigenvalue(grid.h1, grid.h2), {problem.energy_before, inherits ? motion : 0.0});
 }
 
-EnergyNumbers describe_energy(const Model& model, const LoadStep& loads,
-                              const TangentialSolution& tangential) {
+EnergyNumbers describe_energy(const Model& model, const LoadStep& loads, const TangentialSolution& tangential) {
   const Index cells = model.grid.cells();
   const ArrayXd& bound = loads.problem.friction_bound;
   using Sums = std::array<double, 3>;
@@ -118,8 +116,7 @@ EnergyNumbers describe_energy(const Model& model, const LoadStep& loads,
         const auto s2 = tangential.slip.segment(first + cells, n);
         const ArrayXd& u = tangential.elastic_displacement;
         sum += Sums{0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
-                    (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(),
-                    -(q1 * s1 + q2 * s2).sum()};
+                    (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(), -(q1 * s1 + q2 * s2).sum()};
       });
   return {elastic, dissipated, of_loads};
 }
@@ -130,14 +127,13 @@ SlipDirection direction_of(const TangentialSolution& tangential, const StepNumbe
   const bool slips =
       numbers.stick.stick_cells < numbers.contact.contact_cells &&
       !(numbers.energy.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
-  return slips ? slip_direction(tangential.traction, tangential.slip)
-               : SlipDirection{std::nan(""), std::nan("")};
+  return slips ? slip_direction(tangential.traction, tangential.slip) : SlipDirection{std::nan(""), std::nan("")};
 }
 
 }  // namespace
 
-StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step,
-                          const SolvedStep& solved, const RigidMotion& motion, const ArrayXd& slip) {
+StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step, const SolvedStep& solved,
+                          const RigidMotion& motion, const ArrayXd& slip) {
   StepNumbers numbers;
   numbers.contact = describe_contact(scene, model, solved.normal);
   numbers.stick = describe_stick(model, solved, numbers.contact, slip, step.detail);
@@ -154,8 +150,7 @@ double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressur
   const Grid& grid = model.grid;
   const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
   const Sweep rows = Sweep::whole(grid);
-  using Moments =
-      std::array<double, 6>;  // zeroth, first (x1, x2) and second (11, 12, 22), over the cell's area
+  using Moments = std::array<double, 6>;  // zeroth, first (x1, x2) and second (11, 12, 22), over the cell's area
   const auto moments_about = [&](double c1, double c2) {
     return rows.sum<Moments>([&](Index first, Index last, Moments& sum) {
       const auto p = pressure.segment(first, last - first);
@@ -166,8 +161,7 @@ double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressur
     });
   };
   const Moments about_origin = moments_about(0.0, 0.0);
-  const Moments about_centroid =
-      moments_about(about_origin[1] / about_origin[0], about_origin[2] / about_origin[0]);
+  const Moments about_centroid = moments_about(about_origin[1] / about_origin[0], about_origin[2] / about_origin[0]);
   const auto mean = [&](std::size_t k) { return about_centroid[k] / about_centroid[0]; };
   const double covariance = mean(3) * mean(5) - mean(4) * mean(4);
   const double radius = std::sqrt(5.0 * std::sqrt(std::max(covariance, 0.0)));

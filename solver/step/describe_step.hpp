@@ -19,8 +19,7 @@ struct SolvedStep {
   TangentialSolution tangential;
 };
 
-/// The numbers of a step in the model's units; forces, moments and energies over the cell area, counted areas
-/// in m^2.
+/// The numbers of a step in the model's units; forces, moments and energies over the cell area, counted areas in m^2.
 struct StepNumbers {
   ContactNumbers contact;
   StickNumbers stick;
@@ -30,8 +29,8 @@ struct StepNumbers {
 };
 
 /// motion: since the first step began. slip: see ContactState.
-StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step,
-                          const SolvedStep& solved, const RigidMotion& motion, const Eigen::ArrayXd& slip);
+StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step, const SolvedStep& solved,
+                          const RigidMotion& motion, const Eigen::ArrayXd& slip);
 
 /// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
 /// pressure about its centre (those along the axes are a_i^2/5), which know the radius to far less than a

@@ -20,8 +20,7 @@ double squared_differences(const auto& rows, Index apart, int parity) {
 }
 
 /// The integral of |grad v|^2.
-double gradient_squared(const Grid& grid, const Eigen::ArrayXd& v, std::span<const Parity> parities,
-                        Index apart) {
+double gradient_squared(const Grid& grid, const Eigen::ArrayXd& v, std::span<const Parity> parities, Index apart) {
   double sum = 0.0;
   for (std::size_t c = 0; c < parities.size(); ++c) {
     const Eigen::Map<const Rows> rows(v.data() + static_cast<Index>(c) * grid.cells(), grid.n1, grid.n2);

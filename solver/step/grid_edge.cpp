@@ -28,8 +28,7 @@ bool reaches_edge(const Grid& grid, const ArrayXd& pressure) {
 
 std::vector<Surface> dimensionless_surfaces(const Scene& scene, const Model& model) {
   std::vector<Surface> surfaces;
-  for (const Surface& surface : scene.surfaces)
-    surfaces.push_back(to_dimensionless(surface, model.length_unit));
+  for (const Surface& surface : scene.surfaces) surfaces.push_back(to_dimensionless(surface, model.length_unit));
   return surfaces;
 }
 
@@ -91,8 +90,7 @@ std::optional<std::array<double, 2>> sides_of_overlap(const Scene& scene, const 
                                                       const NormalSolution& normal, const ArrayXd& traction) {
   const Grid& grid = model.grid;
   // Away from the axis of one shape the gap only grows.
-  if (scene.surfaces.size() == 1 && !is_measured(scene.surfaces.front()) &&
-      !reaches_edge(grid, normal.pressure))
+  if (scene.surfaces.size() == 1 && !is_measured(scene.surfaces.front()) && !reaches_edge(grid, normal.pressure))
     return std::nullopt;
   const Grid larger = surroundings(scene, model, normal.approach);
   if (larger.cells() == grid.cells()) return std::nullopt;
@@ -100,8 +98,7 @@ std::optional<std::array<double, 2>> sides_of_overlap(const Scene& scene, const 
   const auto there = [&](const ArrayXd& field) { return inside.expanded(field, normal_symmetry()); };
   const ArrayXd u = opening(model, larger, there(normal.pressure), there(traction));
   const ArrayXd gap = continued_gap(scene, model, larger, inside) + (u - normal.approach);
-  const ArrayXd overlap =
-      1.0 - (gap >= -kOpen * u.maxCoeff()).cast<double>().max(there(ArrayXd::Ones(grid.cells())));
+  const ArrayXd overlap = 1.0 - (gap >= -kOpen * u.maxCoeff()).cast<double>().max(there(ArrayXd::Ones(grid.cells())));
   if ((overlap == 0.0).all()) return std::nullopt;
   const auto side = [&](const ArrayXd& x, Index n, double h) {
     return std::max(static_cast<double>(n) * h, 2.0 * (overlap * x.abs()).maxCoeff() + 3.0 * h);
@@ -111,16 +108,16 @@ std::optional<std::array<double, 2>> sides_of_overlap(const Scene& scene, const 
 
 }  // namespace
 
-void require_contact_within_grid(const Scene& scene, const Model& model, const Step& step,
-                                 const NormalSolution& normal, const ArrayXd& traction) {
+void require_contact_within_grid(const Scene& scene, const Model& model, const Step& step, const NormalSolution& normal,
+                                 const ArrayXd& traction) {
   if (scene.ends_at_grid_edge || normal.status != Status::converged) return;
   const Units units(scene.units);
   const auto refuse = [&](const std::string& allowed) {
     const Grid grid = model.grid_in_m();
-    throw InputError(scene.source.string(), "grid.extent",
-                     units.pair_text("m", {grid.h1 * static_cast<double>(grid.n1),
-                                           grid.h2 * static_cast<double>(grid.n2)}),
-                     allowed + "; or upper.ends_at_grid_edge = true, where the body ends there");
+    throw InputError(
+        scene.source.string(), "grid.extent",
+        units.pair_text("m", {grid.h1 * static_cast<double>(grid.n1), grid.h2 * static_cast<double>(grid.n2)}),
+        allowed + "; or upper.ends_at_grid_edge = true, where the body ends there");
   };
   const bool at_edge = reaches_edge(model.grid, normal.pressure);
   if (const Surface* const map = find_height_map(scene.surfaces)) {
@@ -133,10 +130,9 @@ void require_contact_within_grid(const Scene& scene, const Model& model, const S
              scene.contact.pressure_file.string());
   } else if (scene.contact.pressure == PressureModel::solved) {  // Hertz's fits, or there is no model
     if (const auto sides = sides_of_overlap(scene, model, normal, traction))
-      refuse(fmt::format(
-          "{} or more, since the contact extends beyond the grid's edge under {} N",
-          units.pair_text("m", {(*sides)[0] * model.length_unit, (*sides)[1] * model.length_unit}),
-          *step.normal));
+      refuse(fmt::format("{} or more, since the contact extends beyond the grid's edge under {} N",
+                         units.pair_text("m", {(*sides)[0] * model.length_unit, (*sides)[1] * model.length_unit}),
+                         *step.normal));
   }
 }
 

@@ -51,30 +51,29 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
 
 /// On the part of the grid that the model leaves; the answer is on the whole one.
 NormalSolution solved_pressure(const Scene& scene, const Model& model, double normal_load,
-                               const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
-                               const Progress& progress) {
+                               const Eigen::ArrayXd& opening, const StaggeredTarget& goal, const Progress& progress) {
   // The opening by shear has none of the symmetries of the gap.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
   Eigen::ArrayXd gap;  // where it is not the model's
   if (opening.size() > 0) gap = model.gap + opening;
   if (part.trimmed() || part.quadrant()) gap = part.restricted(model.gap);
-  NormalSolution solution = solve_normal_contact(
-      elasticity(scene, model, part), part.grid(),
-      {.gap = gap.size() > 0 ? gap : model.gap,
-       .total_pressure = normal_load / model.grid.cell_area() / images,
-       .guess = part.restricted(goal.guess)},
-      {.tolerance = std::max(std::min(kPressureTolerance, scene.solver.tolerance), goal.gap),
-       .refine_approach = goal.gap == 0.0,
-       .progress = progress,
-       .on_cells_known = [&](double of_cells) {
-         require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
-       }});
+  NormalSolution solution =
+      solve_normal_contact(elasticity(scene, model, part), part.grid(),
+                           {.gap = gap.size() > 0 ? gap : model.gap,
+                            .total_pressure = normal_load / model.grid.cell_area() / images,
+                            .guess = part.restricted(goal.guess)},
+                           {.tolerance = std::max(std::min(kPressureTolerance, scene.solver.tolerance), goal.gap),
+                            .refine_approach = goal.gap == 0.0,
+                            .progress = progress,
+                            .on_cells_known = [&](double of_cells) {
+                              require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
+                            }});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(std::move(solution.pressure), normal_symmetry());
   // Shear opens the gap with the symmetry of its friction.
-  const bool shear_turns = opening.size() == 0 || !model.friction.factors ||
-                           is_half_turn_symmetric(model.grid, *model.friction.factors);
+  const bool shear_turns =
+      opening.size() == 0 || !model.friction.factors || is_half_turn_symmetric(model.grid, *model.friction.factors);
   if (scene.solver.model != ModelChoice::full && !model.forces && shear_turns &&
       is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
@@ -90,9 +89,8 @@ HertzContact under_part_of_load(const HertzContact& contact, double part) {
 
 }  // namespace
 
-NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
-                             const Eigen::ArrayXd& opening, const StaggeredTarget& goal,
-                             const Progress& progress) {
+NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step, const Eigen::ArrayXd& opening,
+                             const StaggeredTarget& goal, const Progress& progress) {
   if (scene.contact.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
   const double load = to_dimensionless(*step.normal, model.force_unit());
   if (scene.contact.pressure == PressureModel::solved)

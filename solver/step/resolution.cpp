@@ -56,15 +56,11 @@ Area measure(const Grid& grid, const Field& field) {
 /// outside the contact, or the body would not turn.
 double bound_at_centre(const Grid& grid, const LoadStep& loads) {
   if (!loads.limit.centre) return 0.0;
-  const auto cell = [](double x, double h, Index n) {
-    return std::floor(x / h + 0.5 * static_cast<double>(n));
-  };
+  const auto cell = [](double x, double h, Index n) { return std::floor(x / h + 0.5 * static_cast<double>(n)); };
   const double i = cell((*loads.limit.centre)[0], grid.h1, grid.n1);
   const double j = cell((*loads.limit.centre)[1], grid.h2, grid.n2);
-  const bool on_grid =
-      i >= 0.0 && j >= 0.0 && i < static_cast<double>(grid.n1) && j < static_cast<double>(grid.n2);
-  return on_grid ? loads.problem.friction_bound[static_cast<Index>(i) * grid.n2 + static_cast<Index>(j)]
-                 : 0.0;
+  const bool on_grid = i >= 0.0 && j >= 0.0 && i < static_cast<double>(grid.n1) && j < static_cast<double>(grid.n2);
+  return on_grid ? loads.problem.friction_bound[static_cast<Index>(i) * grid.n2 + static_cast<Index>(j)] : 0.0;
 }
 
 /// The twist that a mesh leaves open where the stick area is small. limit_error: relative error of the mesh's
@@ -138,12 +134,10 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const ArrayXd& stick = tangential.stick;
   const ArrayXd& bound = loads.problem.friction_bound;
   const Area contact = measure(
-      grid, [&](Index cell) { return bound[cell]; },
-      [&](Index cell) { return sticking_at(tangential, bound, cell); });
+      grid, [&](Index cell) { return bound[cell]; }, [&](Index cell) { return sticking_at(tangential, bound, cell); });
   if (contact.cells == 0.0) return {};
   const Area sticking = measure(grid, [&](Index cell) { return stick[cell]; });
-  const Area slipping =
-      measure(grid, [&](Index cell) { return bound[cell] > 0.0 && stick[cell] == 0.0 ? 1.0 : 0.0; });
+  const Area slipping = measure(grid, [&](Index cell) { return bound[cell] > 0.0 && stick[cell] == 0.0 ? 1.0 : 0.0; });
   Resolution result;
   if (sticking.cells > 0.0) result.stick_width = 4.0 * sticking.cells / sticking.outline;
   if (slipping.cells > 0.0) result.slip_width = 2.0 * slipping.cells / slipping.outline;
@@ -179,18 +173,16 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
                                           (beyond + narrow * errors.beyond) * sides / contact.cells);
   result.stick_area += kHiddenRing * used * contact.outline;
   const RigidMotion& sliding = loads.limit.sliding;
-  const bool mesh_decides =
-      sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;
-  const double open =
-      mesh_decides ? std::numeric_limits<double>::infinity() : open_twist(grid, loads, limit_error);
+  const bool mesh_decides = sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;
+  const double open = mesh_decides ? std::numeric_limits<double>::infinity() : open_twist(grid, loads, limit_error);
   if (!(open > 0.0)) return result;
   result.open.twist = open;
   result.open.displacement = open * std::hypot(sliding.delta1, sliding.delta2) / std::abs(sliding.twist);
   return result;
 }
 
-Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step,
-                            const Quantities& mesh, const Quantities& path) {
+Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step, const Quantities& mesh,
+                            const Quantities& path) {
   Resolution resolution = solution.resolution;
   resolution.mesh = mesh;
   resolution.path = path;
@@ -198,8 +190,7 @@ Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::s
     return std::visit([](const auto& load) { return load.value == 0.0; }, torsion);
   };
   const auto last = scene.steps.begin() + static_cast<std::ptrdiff_t>(std::min(step + 1, scene.steps.size()));
-  const bool turned =
-      !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
+  const bool turned = !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
   const bool moved = std::any_of(scene.steps.begin(), last, brings_translation);
   const auto size = [](const std::array<double, 2>& pair) { return std::hypot(pair[0], pair[1]); };
   double value = 0.0;

@@ -18,8 +18,7 @@ namespace slipstick::solver {
 ///   a^4. So the relative error is 3/2 dA/A, and on layers at most 2 dA/A, with the uncertainty that
 ///   counted_area() states. The same at the edge of a face, whatever slips. A slip ring, whose tractions are
 ///   known, hides the edge: one that is s cells wide leaves 1/(1 + s^4) of it;
-/// - where the friction follows another law than Coulomb's, the normal load does not fix the sum of its
-/// bounds:
+/// - where the friction follows another law than Coulomb's, the normal load does not fix the sum of its bounds:
 ///   the limit moment has the error of the counted area too, 3/2 dA/A where the bound does not fall towards
 ///   the edge, and up to 0.35 (h/r)^1.5 where it falls;
 /// - where a moment is imposed, the error of a stick area that shrinks below a cell: the distance from
@@ -36,14 +35,13 @@ namespace slipstick::solver {
 /// within cells that stick, which follows from their tractions; the error of the contact's area where the
 /// bound does not fall towards the edge; and the error of a_s by the error of the limit.
 ///
-/// contact_area: in any unit. The rest in the model's units (stresses over G, lengths over a cell), of the
-/// whole grid.
+/// contact_area: in any unit. The rest in the model's units (stresses over G, lengths over a cell), of the whole grid.
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
                       const TangentialSolution& tangential, const CountedArea& contact_area);
 
 /// The resolution of a solution at the end of the `step`-th step: with the number that the loads up to there
 /// leave open, and its uncertainty. mesh, path: see Resolution.
-Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step,
-                            const Quantities& mesh, const Quantities& path = {});
+Resolution with_uncertainty(const Solution& solution, const Scene& scene, std::size_t step, const Quantities& mesh,
+                            const Quantities& path = {});
 
 }  // namespace slipstick::solver

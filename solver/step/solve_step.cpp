@@ -26,10 +26,9 @@ constexpr double kGapRounding = 1e-13;
 /// the mesh, and the first turn of the next grid is solved to the same gap.
 constexpr double kPartOfFirstTurn = 0.3;
 
-/// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and
-/// freezes slip directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to
-/// rounding. The other methods have stopped on the gap of the part of the grid that they solved; the whole
-/// grid's differs by rounding.
+/// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and freezes slip
+/// directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to rounding. The other
+/// methods have stopped on the gap of the part of the grid that they solved; the whole grid's differs by rounding.
 CertificateBounds promised(const Scene& scene) {
   const double loads = std::max(scene.solver.tolerance, kSumRounding);
   const double gap = scene.solver.method == Method::paper ? std::numeric_limits<double>::infinity()
@@ -47,8 +46,7 @@ ArrayXd slip_onwards(const ContactState& before, const SolvedStep& solved) {
   const TangentialSolution& tangential = solved.tangential;
   if ((solved.normal.pressure > 0.0 && before.normal.pressure == 0.0).any()) return {};
   if (before.slip.size() == 0) return tangential.slip;
-  const ArrayXd onwards =
-      (tangential.stick == 0.0 && dot_products(before.slip, tangential.slip) > 0.0).cast<double>();
+  const ArrayXd onwards = (tangential.stick == 0.0 && dot_products(before.slip, tangential.slip) > 0.0).cast<double>();
   return tangential.slip + onwards.replicate(2, 1) * before.slip;
 }
 
@@ -106,8 +104,7 @@ CoupledGuess guess_from_coarse_grid(const Scene& scene, const Model& model, cons
   work.safeguards = found.work.safeguards;
   const auto& [loads, normal, tangential] = found.solved;
   if (normal.status != Status::converged || tangential.status != Status::converged) return guess;
-  guess.pressure =
-      with_change(before.normal.pressure, start.normal.pressure, grid, coarse, normal.pressure).max(0.0);
+  guess.pressure = with_change(before.normal.pressure, start.normal.pressure, grid, coarse, normal.pressure).max(0.0);
   guess.traction = with_change(before.traction, start.traction, grid, coarse, tangential.traction);
   guess.gap = kPartOfFirstTurn * found.first_gap;
   return guess;
@@ -136,8 +133,7 @@ Found solve_coupled(const Scene& scene, const Model& model, const Step& step, co
           [&](const ArrayXd& pressure, const StaggeredTarget& goal) {
             loads = load_step(scene, model, step, pressure, before);
             if (!loads.carried()) return TangentialSolution{};
-            FoundTractions tractions =
-                find_tractions(scene, model, std::move(loads), pressure, before, progress, goal);
+            FoundTractions tractions = find_tractions(scene, model, std::move(loads), pressure, before, progress, goal);
             loads = std::move(tractions.loads);
             found.left_out = std::move(tractions.left_out);
             found.work.operator_applications += finest_grid_applications(tractions.solution.grids);
@@ -173,8 +169,7 @@ Found solve_in_sequence(const Scene& scene, const Model& model, const Step& step
   work.seconds.pressure = watch.lap();
   LoadStep loads = load_step(scene, model, step, normal.pressure, before);
   require_carried(scene, model, step, loads);
-  FoundTractions tractions =
-      find_tractions(scene, model, std::move(loads), normal.pressure, before, progress);
+  FoundTractions tractions = find_tractions(scene, model, std::move(loads), normal.pressure, before, progress);
   work.operator_applications = finest_grid_applications(tractions.solution.grids);
   work.safeguards += tractions.solution.safeguards;
   work.seconds.traction = watch.lap();
@@ -222,8 +217,8 @@ void require_finite(const Solution& solution) {
 
 }  // namespace
 
-StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& step,
-                      const ContactState& before, const Progress& progress) {
+StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& step, const ContactState& before,
+                      const Progress& progress) {
   Stopwatch watch(model.cache.get());
   const KeptRounding rounding;  // solves that draw their rounding change it
   Found found = model.shear_coupling && model.law->couples()
@@ -238,8 +233,8 @@ StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& s
   result.work = work_of(scene, model, solved, std::move(found.work));
   result.motion = moved(before.motion, tangential);
   const ArrayXd onwards = before.untouched() ? ArrayXd() : slip_onwards(before, solved);
-  result.numbers = describe_step(scene, model, step, solved, result.motion,
-                                 before.untouched() ? tangential.slip : onwards);
+  result.numbers =
+      describe_step(scene, model, step, solved, result.motion, before.untouched() ? tangential.slip : onwards);
   result.message = message_of(solved);
   if (solved.normal.status == Status::converged && tangential.status == Status::converged) {
     result.message = violated_bounds(result.numbers.quality.certificate, promised(scene));

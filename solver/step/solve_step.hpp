@@ -29,8 +29,8 @@ struct StepResult {
 };
 
 /// Throws InputError for gross slip and for a contact that the grid's edge cuts off.
-StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& step,
-                      const ContactState& before, const Progress& progress = {});
+StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& step, const ContactState& before,
+                      const Progress& progress = {});
 
 /// The contact at the end of a step that started from `before`.
 ContactState contact_after(const ContactState& before, const StepResult& step);

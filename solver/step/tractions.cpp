@@ -53,10 +53,9 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
   if (moment && step.force == std::array<double, 2>{}) {
     throw InputError(
         file, step.key + ".moment", fmt::format("{} N m", *moment),
-        fmt::format(
-            "below {:.17g} N m in size, the limit moment of this pressure and mesh; at or above it the "
-            "contact slips everywhere, {}",
-            loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
+        fmt::format("below {:.17g} N m in size, the limit moment of this pressure and mesh; at or above it the "
+                    "contact slips everywhere, {}",
+                    loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
   }
   // Next to 1 the factor does not say which side of the limit the loads are on: their numbers do.
   const double factor = loads.limit.factor;
@@ -87,15 +86,13 @@ void require_centred(const Scene& scene, const ArrayXd& bound) {
   if (odd <= allowed) return;
   throw InputError(
       scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.solver.method)),
-      fmt::format(
-          "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
-          "torsion about the origin only, and {:.3g} of this pressure is odd (allowed: {:.3g})",
-          odd, allowed));
+      fmt::format("coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
+                  "torsion about the origin only, and {:.3g} of this pressure is odd (allowed: {:.3g})",
+                  odd, allowed));
 }
 
 [[noreturn]] void refuse_infinite(const Scene& scene) {
-  throw InputError(scene.source.string(), "contact.friction",
-                   fmt::format("{}", scene.contact.friction.coefficient),
+  throw InputError(scene.source.string(), "contact.friction", fmt::format("{}", scene.contact.friction.coefficient),
                    "a law that is finite under the pressure of every cell");
 }
 
@@ -120,16 +117,14 @@ void impose_turning(TangentialProblem& problem, const Model& model, const Step& 
   }
 }
 
-void impose_translation(TangentialProblem& problem, const Model& model, const Step& step,
-                        const RigidMotion& before) {
+void impose_translation(TangentialProblem& problem, const Model& model, const Step& step, const RigidMotion& before) {
   if (step.displacement) {
     problem.displacement = {to_dimensionless((*step.displacement)[0], model.length_unit) - before.delta1,
                             to_dimensionless((*step.displacement)[1], model.length_unit) - before.delta2};
   } else {
     const double unit = model.force_unit();
     const double area = model.grid.cell_area();
-    problem.force = {to_dimensionless(step.force[0], unit) / area,
-                     to_dimensionless(step.force[1], unit) / area};
+    problem.force = {to_dimensionless(step.force[0], unit) / area, to_dimensionless(step.force[1], unit) / area};
   }
 }
 
@@ -154,8 +149,8 @@ void expand(TangentialSolution& solution, const Reduction& part) {
 }
 
 /// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
-TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            TangentialProblem problem, const Progress& progress, double gap) {
+TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part, TangentialProblem problem,
+                            const Progress& progress, double gap) {
   const Elasticity elastic = elasticity(scene, model, part);
   if (scene.solver.method == Method::coulomb) {
     return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
@@ -168,12 +163,10 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
                                     }});
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
-  TangentialSolution solution = solve_by_paper_method(*op, problem,
-                                                      {.tolerance = scene.solver.tolerance,
-                                                       .max_iterations = scene.solver.max_iterations,
-                                                       .progress = progress});
-  solution.grids = {
-      {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
+  TangentialSolution solution = solve_by_paper_method(
+      *op, problem,
+      {.tolerance = scene.solver.tolerance, .max_iterations = scene.solver.max_iterations, .progress = progress});
+  solution.grids = {{part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
   return solution;
 }
 
@@ -191,8 +184,7 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   problem.start = before.traction;
   problem.energy_before = energy_before(model.friction, pressure, before);
   const bool translations = has_translations(scene, model, pressure, before.untouched());
-  const LimitLoad unit =
-      translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
+  const LimitLoad unit = translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
   loads.moment_limit = translations ? unit.factor : moment_limit(model.grid, problem.friction_bound);
   impose_turning(problem, model, step, loads.moment_limit, before.motion);
   if (translations) impose_translation(problem, model, step, before.motion);
@@ -210,8 +202,7 @@ void require_carried(const Scene& scene, const Model& model, const Step& step, c
 }
 
 FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads, const ArrayXd& pressure,
-                              const ContactState& before, const Progress& progress,
-                              const StaggeredTarget& goal) {
+                              const ContactState& before, const Progress& progress, const StaggeredTarget& goal) {
   const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
   const bool translations = loads.problem.force || loads.problem.displacement;
   TangentialProblem problem = reduced(loads.problem, part);
@@ -222,21 +213,18 @@ FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep l
   return {std::move(loads), std::move(solution), omissions(scene, model, part, translations)};
 }
 
-ArrayXd complete_slip(ArrayXd slip, const TangentialSolution& solution, const Scene& scene,
-                      const Model& model, const ArrayXd& bound, const ArrayXd& pressure,
-                      const ContactState& before) {
+ArrayXd complete_slip(ArrayXd slip, const TangentialSolution& solution, const Scene& scene, const Model& model,
+                      const ArrayXd& bound, const ArrayXd& pressure, const ContactState& before) {
   const auto free = ((pressure > 0.0) && (bound == 0.0)).replicate(2, 1);
   if (!free.any()) return slip;
   const bool rests = solution.twist == 0.0 && solution.displacement == std::array<double, 2>{};
-  if (scene.contact.friction.is_frictionless() && rests && !moves_by_pressure(scene, model))
-    return slip;  // zero
+  if (scene.contact.friction.is_frictionless() && rests && !moves_by_pressure(scene, model)) return slip;  // zero
   const Reduction part = traction_part(scene, model, pressure, before.normal.pressure);
-  ArrayXd u = part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction)
-                                                         : solution.traction);
+  ArrayXd u =
+      part.restricted(before.traction.size() > 0 ? ArrayXd(solution.traction - before.traction) : solution.traction);
   elasticity(scene, model, part).make(part.grid(), tangential_kernel())->apply(u, u);
   u = part.expanded(std::move(u), torsion_symmetry());
-  if (const ArrayXd pressed = pressure_displacement(scene, model, pressure, before); pressed.size() > 0)
-    u += pressed;
+  if (const ArrayXd pressed = pressure_displacement(scene, model, pressure, before); pressed.size() > 0) u += pressed;
   const Index cells = pressure.size();
   u.head(cells) -= solution.displacement[0];
   u.tail(cells) -= solution.displacement[1];

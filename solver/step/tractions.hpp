@@ -43,22 +43,19 @@ struct LoadStep {
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const Eigen::ArrayXd& pressure,
                    const ContactState& before);
 
-/// Throws InputError for gross slip, with the limit loads of the contact and the motion in which it would
-/// slide.
+/// Throws InputError for gross slip, with the limit loads of the contact and the motion in which it would slide.
 void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads);
 
 /// Tractions on the whole grid, the loads that they carry, and the omissions of the model.
 struct FoundTractions {
-  LoadStep
-      loads;  ///< without the fields of its problem that only the solve needs: initial_displacement, start
+  LoadStep loads;  ///< without the fields of its problem that only the solve needs: initial_displacement, start
   TangentialSolution solution;
   std::vector<Omission> left_out;
 };
 
 /// The tractions of a step under its pressure. goal: of a turn under full coupling.
-FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads,
-                              const Eigen::ArrayXd& pressure, const ContactState& before,
-                              const Progress& progress, const StaggeredTarget& goal = {});
+FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep loads, const Eigen::ArrayXd& pressure,
+                              const ContactState& before, const Progress& progress, const StaggeredTarget& goal = {});
 
 /// The slip of the step with that of cells that are pressed and have no friction; no traction depends on it.
 /// solution: tractions and motion of the step. bound: of friction in each cell.

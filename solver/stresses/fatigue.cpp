@@ -25,8 +25,7 @@ std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& po
     const auto farthest = std::ranges::max(points, {}, distance);
     const double square = distance(active.front());
     const bool stops = active.size() > D + 1 || round > 10 * points.size();  // by rounding
-    if (stops || !(distance(farthest) > (1.0 + 1e-12) * square))
-      return {center, std::sqrt(distance(farthest))};
+    if (stops || !(distance(farthest) > (1.0 + 1e-12) * square)) return {center, std::sqrt(distance(farthest))};
     active.push_back(farthest);
     weights.push_back(0.0);
     for (bool drops = true; drops;) {  // to the sphere through all active points, or to a weight of zero
@@ -59,9 +58,7 @@ std::pair<Eigen::Matrix<double, D, 1>, double> smallest_ball(const Points<D>& po
 
 Tensor deviator(const Tensor& stress) { return stress - stress.trace() / 3.0 * Tensor::Identity(); }
 
-Eigen::Vector3d principal(const Tensor& stress) {
-  return stress.selfadjointView<Eigen::Lower>().eigenvalues();
-}
+Eigen::Vector3d principal(const Tensor& stress) { return stress.selfadjointView<Eigen::Lower>().eigenvalues(); }
 
 /// An upper bound of the shear stress's amplitude on any plane: a deviator has at most its norm over sqrt(2).
 /// NaN where a stress is.
@@ -125,12 +122,11 @@ DangVan dang_van(std::span<const Tensor> states, double alpha) {
   return found;
 }
 
-/// Squares are bisected. With T a bound of the shear stress's amplitude and S the largest shear stress, a
-/// plane within the angle d of the best one has at least its value less 2 d^2 (T + k S). Proof: at the best
-/// plane the radius of the smallest circle is the deviation of the shear stresses for some weights of the
-/// states, and that deviation is a lower bound at every other plane. Along a great circle it is the norm of a
-/// vector whose second derivative is at most 4 T, and the normal stress's is at most 4 S; the first
-/// derivative of the sum vanishes at the best plane.
+/// Squares are bisected. With T a bound of the shear stress's amplitude and S the largest shear stress, a plane within
+/// the angle d of the best one has at least its value less 2 d^2 (T + k S). Proof: at the best plane the radius of the
+/// smallest circle is the deviation of the shear stresses for some weights of the states, and that deviation is a lower
+/// bound at every other plane. Along a great circle it is the norm of a vector whose second derivative is at most 4 T,
+/// and the normal stress's is at most 4 S; the first derivative of the sum vanishes at the best plane.
 void find_plane(std::span<const Tensor> states, double k, Findley& best) {
   const double amplitude = amplitude_bound(states);
   double shear = 0.0, normal = -std::numeric_limits<double>::infinity();
@@ -153,8 +149,7 @@ void find_plane(std::span<const Tensor> states, double k, Findley& best) {
     for (Square& square : squares) {
       const double u = std::max(std::abs(square.u) - half, 0.0), v = std::max(std::abs(square.v) - half, 0.0);
       const double error = largest / (1.0 + u * u + v * v);  // the cube lies farther out here
-      const Findley found =
-          on_plane(states, k, normal_of(square.face, square.u, square.v), best.value - error, shears);
+      const Findley found = on_plane(states, k, normal_of(square.face, square.u, square.v), best.value - error, shears);
       square.most = found.value + error;
       if (found.value > best.value) best = found;
     }
@@ -168,8 +163,7 @@ void find_plane(std::span<const Tensor> states, double k, Findley& best) {
   }
 }
 
-void LargestFatigue::include(std::span<const StressPlane> states, const FatigueCoefficients& asked,
-                             const Grid& grid) {
+void LargestFatigue::include(std::span<const StressPlane> states, const FatigueCoefficients& asked, const Grid& grid) {
   std::vector<Tensor> cycle(states.size());
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const std::array<double, 3> at{grid.x1(cell / grid.n2), grid.x2(cell % grid.n2), states[0].depth};

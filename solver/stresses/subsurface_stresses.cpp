@@ -9,8 +9,7 @@ namespace slipstick::solver {
 namespace {
 
 const Grid& whole(const Grid& grid) {
-  if (grid.quadrant || grid.ranks.several())
-    throw std::invalid_argument("stresses need a whole grid, on one rank");
+  if (grid.quadrant || grid.ranks.several()) throw std::invalid_argument("stresses need a whole grid, on one rank");
   return grid;
 }
 
@@ -141,8 +140,7 @@ void SubsurfaceStresses::add(std::size_t kernel, Field& quadrant) {
         Complex* const to = stresses_[influences[u].stress].data() + start;
         for (Index k = 0; k < m; ++k) {
           const Complex sum = q[k] + sign * q[odd ? m - 1 - k : (k == 0 ? 0 : m - k)];
-          to[k] +=
-              real ? 2.0 * sum.real() * from[k] : 2.0 * sum.imag() * Complex(-from[k].imag(), from[k].real());
+          to[k] += real ? 2.0 * sum.real() * from[k] : 2.0 * sum.imag() * Complex(-from[k].imag(), from[k].real());
         }
       }
     }

@@ -1,5 +1,4 @@
-// Slip under a map of friction. Other laws and maps: same_answer_test.py, known_history_test.py,
-// bad_scene_test.py.
+// Slip under a map of friction. Other laws and maps: same_answer_test.py, known_history_test.py, bad_scene_test.py.
 
 #include <gtest/gtest.h>
 
@@ -41,10 +40,9 @@ TEST(FrictionMap, LetsCellsWithoutFrictionSlip) {
   const ArrayXd pressed = moved(coupling_kernel(), steps[0].pressure);
   for (std::size_t k = 0; k < 2; ++k) {
     const RigidMotion before =
-        k == 0 ? RigidMotion{}
-               : RigidMotion{steps[0].displacement[0], steps[0].displacement[1], steps[0].twist_angle};
-    ArrayXd slip = moved(tangential_kernel(),
-                         k == 0 ? steps[0].traction : ArrayXd(steps[1].traction - steps[0].traction));
+        k == 0 ? RigidMotion{} : RigidMotion{steps[0].displacement[0], steps[0].displacement[1], steps[0].twist_angle};
+    ArrayXd slip =
+        moved(tangential_kernel(), k == 0 ? steps[0].traction : ArrayXd(steps[1].traction - steps[0].traction));
     if (k == 0) slip += pressed;
     slip.head(cells) -= steps[k].displacement[0] - before.delta1;
     slip.tail(cells) -= steps[k].displacement[1] - before.delta2;

@@ -27,8 +27,7 @@ inline ModelSolution solve_in_model_units(const Scene& scene,
   HistoryState state;
   for (;;) {
     const HistoryStep step = solve_history_step(scene, model, state, Detail::all);
-    ModelSolution solution{to_si(step, scene, model), model, step.last.solved.normal,
-                           step.last.solved.tangential};
+    ModelSolution solution{to_si(step, scene, model), model, step.last.solved.normal, step.last.solved.tangential};
     solution.model.cache = nullptr;
     if (on_step) on_step(solution);
     if (!step.converged() || step.state.finished + 1 == steps) return solution;

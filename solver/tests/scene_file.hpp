@@ -46,8 +46,8 @@ class SceneFile : public ScratchFolder {
     write("p.csv", table);
     std::string text = kShortScene;
     text.erase(text.find("normal = 1000\n"), 14);
-    std::vector<std::string> overrides{"contact.pressure=file", "contact.pressure_file=p.csv",
-                                       "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"};
+    std::vector<std::string> overrides{"contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[4, 4]",
+                                       "grid.extent=[0.001, 0.001]"};
     overrides.insert(overrides.end(), more.begin(), more.end());
     return read(text, overrides);
   }
@@ -55,8 +55,7 @@ class SceneFile : public ScratchFolder {
   Scene mapped(const std::string& heights, const std::string& spacing,
                const std::vector<std::string>& overrides = {}) const {
     write("heights.csv", heights);
-    std::string text =
-        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = " + spacing + "\n");
+    std::string text = with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = " + spacing + "\n");
     return read(text.erase(text.find("[grid]")), overrides);
   }
 };

@@ -49,12 +49,10 @@ struct Bench {
     return solve_by_paper_method(*op, under_moment(bound, moment_ratio * limit), to_tolerance(tolerance));
   }
   Certificate certify_solution(const TangentialSolution& solution, double moment) const {
-    return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound,
-                   rotation_field(model.grid), moment);
+    return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound, rotation_field(model.grid),
+                   moment);
   }
-  double moment_of(const Eigen::ArrayXd& traction) const {
-    return (traction * rotation_field(model.grid)).sum();
-  }
+  double moment_of(const Eigen::ArrayXd& traction) const { return (traction * rotation_field(model.grid)).sum(); }
 
   Model model;
   Eigen::ArrayXd bound;

@@ -47,8 +47,7 @@ void expect_same_torsion(const Profile& profile, const Profile& expected) {
     same(state.stick_ratio, other.stick_ratio);
     same(state.tangent_stiffness, other.tangent_stiffness);
     for (const double r : {0.5, 0.95}) {
-      same(traction(state, r, profile) / profile.pressure(0),
-           traction(other, r, expected) / expected.pressure(0));
+      same(traction(state, r, profile) / profile.pressure(0), traction(other, r, expected) / expected.pressure(0));
     }
     LoadingHistory history(profile);
     LoadingHistory half_space(expected);
@@ -77,9 +76,8 @@ TEST(LayeredContact, OfALayerLikeItsBaseIsHertzAndLubkin) {
   expect_same_torsion(*punch.profile, flat_punch_profile());
 }
 
-/// The same equation by collocation, to 10 digits: reflections -1/2, 1/2 and -1 at half the radius. Far
-/// below, a rigid base adds zeta(3)/(4 pi) (a/h)^3, the first term of the equation's series; the next is
-/// (a/h)^2 smaller.
+/// The same equation by collocation, to 10 digits: reflections -1/2, 1/2 and -1 at half the radius. Far below, a rigid
+/// base adds zeta(3)/(4 pi) (a/h)^3, the first term of the equation's series; the next is (a/h)^2 smaller.
 TEST(LayeredTorsion, HasTheStiffnessOfBondedDiscs) {
   EXPECT_NEAR(relative_stiffness(0.5, 3), 1.1272224142, 1e-10);
   EXPECT_NEAR(relative_stiffness(0.5, 1.0 / 3), 0.8719073968, 1e-10);
@@ -89,10 +87,9 @@ TEST(LayeredTorsion, HasTheStiffnessOfBondedDiscs) {
     EXPECT_NEAR((relative_stiffness(h, kInfinity) - 1) * h * h * h, leading, 0.2 / (h * h)) << h;
 }
 
-/// A thin layer on a rigid base gives way under each point by itself. It is sheared by q h/G: dM/dphi = pi G
-/// a^4/(2 h). If it is compressible it is pressed together as a foundation of modulus M = 2 G (1 - nu)/(1 - 2
-/// nu): p = M (a^2 - r^2)/(2 R h), W = (pi/4) M a^4/(R h), M_lim = (8/15) mu W a. On another base it does not
-/// count.
+/// A thin layer on a rigid base gives way under each point by itself. It is sheared by q h/G: dM/dphi = pi G a^4/(2 h).
+/// If it is compressible it is pressed together as a foundation of modulus M = 2 G (1 - nu)/(1 - 2 nu): p = M (a^2 -
+/// r^2)/(2 R h), W = (pi/4) M a^4/(R h), M_lim = (8/15) mu W a. On another base it does not count.
 TEST(LayeredContact, IsLocalOnAThinLayerOrThatOfTheBase) {
   std::vector<std::array<double, 6>> off;
   for (const double h : {0.04, 0.02}) {
@@ -101,9 +98,8 @@ TEST(LayeredContact, IsLocalOnAThinLayerOrThatOfTheBase) {
     const Pair soft = on_base(h, 0.5, 0.5);
     const LayeredContact base = press(Indenter::sphere, 2.0 / 3 * soft.effective_modulus(), 1, soft);
     EXPECT_LE(std::max(uncertainty, base.uncertainty), 3e-10) << h;
-    off.push_back({relative_stiffness(h, kInfinity) * 32 * h / (3 * pi) - 1,
-                   relative_stiffness(h, 0.5) / 0.5 - 1, contact.contact_radius - 1,
-                   profile->pressure(0) / 2 - 1, profile->moment_limit() * 15 / 8 - 1,
+    off.push_back({relative_stiffness(h, kInfinity) * 32 * h / (3 * pi) - 1, relative_stiffness(h, 0.5) / 0.5 - 1,
+                   contact.contact_radius - 1, profile->pressure(0) / 2 - 1, profile->moment_limit() * 15 / 8 - 1,
                    std::pow(base.indentation.contact_radius, 3) - 1});
   }
   // An error of order h/a or h/a ln(h/a) halves with h/a, apart from the logarithm, a sixth here.
@@ -175,9 +171,9 @@ TEST(LayeredContact, LaysTheSurfacesOnEachOther) {
   const auto pressure = [&, &p = *profile](double s) { return p.pressure(s); };
   for (const double r : {0.1, 0.5, 0.9}) {
     const double depth = moved(pressure, 0, r, 0.5, [&](double k) { return pair.normal_excess(k / a); });
-    EXPECT_NEAR(depth * 2 / pair.effective_modulus() * contact.reference_pressure * a /
-                    (contact.approach - a * a * r * r / 2),
-                1, 1e-9);
+    EXPECT_NEAR(
+        depth * 2 / pair.effective_modulus() * contact.reference_pressure * a / (contact.approach - a * a * r * r / 2),
+        1, 1e-9);
   }
   const TorsionState state = from_moment_ratio(0.8, *profile);
   const auto turned = [&, &p = *profile](double r) {

@@ -34,8 +34,7 @@ TEST(StressField, HasTheStressesOfTorsionThatQuadratureGives) {
 
 TEST(StressField, RefusesPointsOutsideTheBodyAndInfiniteStresses) {
   const StressField sphere(from_moment_ratio(0.9), hertz_profile());
-  for (const BodyPoint at :
-       {BodyPoint{-0.1, 0.1}, BodyPoint{0.1, -0.1}, BodyPoint{0.1, NAN}, BodyPoint{1e61, 0}})
+  for (const BodyPoint at : {BodyPoint{-0.1, 0.1}, BodyPoint{0.1, -0.1}, BodyPoint{0.1, NAN}, BodyPoint{1e61, 0}})
     EXPECT_THROW(sphere.by_torsion(at), std::domain_error);
   EXPECT_THROW(sphere.by_pressure({0, 0}, 0.51), std::domain_error);
   const StressField punch(from_moment_ratio(0.9, flat_punch_profile()), flat_punch_profile());

@@ -38,8 +38,7 @@ Json run_on(int cells, double tolerance = 1e-8) {
 TEST(PlanePoint, HasTheErrorsOfItsGrids) {
   const Json point = bench::measure_point(kPaper, run_on(24));
   ASSERT_EQ(point["errors"]["twist"].size(), 4U);
-  const Json alone =
-      to_json(convergence::solve_scene(solver::read_scene(kPaper, run_on(24)["overrides"])).record);
+  const Json alone = to_json(convergence::solve_scene(solver::read_scene(kPaper, run_on(24)["overrides"])).record);
   EXPECT_DOUBLE_EQ(point["errors"]["twist"][0], alone["twist_error"]);
   EXPECT_DOUBLE_EQ(point["errors"]["traction_l2"][0], alone["traction_error"]["l2"]);
   double sum = 0.0;
@@ -84,9 +83,7 @@ TEST(InvalidReason, IsGivenForErrorsThatMeshAndToleranceDoNotExplain) {
 TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
-  const auto load = [](const Json& runs) {
-    return Json{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", runs}};
-  };
+  const auto load = [](const Json& runs) { return Json{{"name", "paper"}, {"moment_ratio", 0.9}, {"runs", runs}}; };
   convergence::Progress progress;
   progress.begin_runs(3, 3.0, 3);
   const Json first = bench::measure_load(options, load(Json::array({run_on(16)})), progress);

@@ -28,8 +28,7 @@ TEST(Gate, NeedsTheReferenceOfASolve) {
 
 // A solve that died is no answer of any kind: whatever was expected, it fails.
 TEST(Gate, FailsWithASolveThatDied) {
-  for (const GateStatus status :
-       {GateStatus::active, GateStatus::expected_failure, GateStatus::report_only}) {
+  for (const GateStatus status : {GateStatus::active, GateStatus::expected_failure, GateStatus::report_only}) {
     Gate gate = gate_on_solve();
     gate.status = status;
     const Judgement judgement = judge(gate, {{"status", "failed"}, {"message", "killed by signal 9"}});

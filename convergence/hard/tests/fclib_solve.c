@@ -38,8 +38,7 @@ int main(int count, char **words) {
   double *reaction = calloc((size_t)size, sizeof *reaction);
   double *velocity = calloc((size_t)size, sizeof *velocity);
   const int failed = fc3d_driver(problem, reaction, velocity, options);
-  printf("%d sweeps, error %.3g\n", options->iparam[SICONOS_IPARAM_ITER_DONE],
-         options->dparam[SICONOS_DPARAM_RESIDU]);
+  printf("%d sweeps, error %.3g\n", options->iparam[SICONOS_IPARAM_ITER_DONE], options->dparam[SICONOS_DPARAM_RESIDU]);
   struct fclib_solution solution = {.v = NULL, .u = velocity, .r = reaction, .l = NULL};
   if (!fclib_write_solution(&solution, words[1])) return 2;
   return failed != 0;

@@ -44,8 +44,7 @@ TEST(HardJudgement, BelievesAnAnswerWithinItsUncertainty) {
   EXPECT_EQ(judge_alone(record).verdict, HardVerdict::wrong);
 }
 
-// A gap of the rounding is the smallest that can be computed; where that is unknown, only the tolerance
-// counts.
+// A gap of the rounding is the smallest that can be computed; where that is unknown, only the tolerance counts.
 TEST(HardJudgement, HoldsACertificateToItsPromise) {
   const auto with = [](Number CertificateRecord::*member, const Number& value, double gap = 1e-9) {
     SolveRecord record = made_record(0.0, 0.01, gap);

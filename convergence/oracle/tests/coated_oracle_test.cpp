@@ -27,8 +27,8 @@ TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
     scene.lower.coating.reset();
     const Oracle plain = *find_oracle(scene).oracle;
     EXPECT_LE(layered.relative_uncertainty, 1e-11) << shape;
-    for (double Oracle::*const number : {&Oracle::contact_radius, &Oracle::moment, &Oracle::twist_angle,
-                                         &Oracle::stick_radius, &Oracle::dissipated}) {
+    for (double Oracle::*const number :
+         {&Oracle::contact_radius, &Oracle::moment, &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated}) {
       EXPECT_NEAR(layered.*number / plain.*number, 1.0, 1e-11) << shape;
     }
     EXPECT_NEAR(layered.normal.approach / plain.normal.approach, 1.0, 1e-11) << shape;
@@ -52,12 +52,10 @@ TEST(CoatedOracle, MovesUnderWavesAsTheSolverHasIt) {
         const analytic::layered::Pair pair({{1, nu}, analytic::layered::Coat{1.0, {base, 0.5 - nu}}}, other);
         const auto first = solver::wave_compliance({{1, nu}, 1.0, {base, 0.5 - nu}}, k);
         const auto second = solver::wave_compliance({{4, 0.3}, 0.7, {1, 0.2}}, k);
-        EXPECT_NEAR(
-            (1 + pair.normal_excess(k)) * 2 / pair.effective_modulus() / (first.normal + second.normal), 1.0,
-            1e-12)
+        EXPECT_NEAR((1 + pair.normal_excess(k)) * 2 / pair.effective_modulus() / (first.normal + second.normal), 1.0,
+                    1e-12)
             << base << ' ' << nu << ' ' << k;
-        EXPECT_NEAR((1 + pair.torsional_excess(k)) / pair.shear_modulus() / (first.across + second.across),
-                    1.0, 1e-13)
+        EXPECT_NEAR((1 + pair.torsional_excess(k)) / pair.shear_modulus() / (first.across + second.across), 1.0, 1e-13)
             << base << ' ' << k;
       }
     }
@@ -71,8 +69,7 @@ TEST(CoatedOracle, CarriesItsLoads) {
   EXPECT_NEAR(carried.moment / (0.5 * oracle.friction.moment_limit), 1.0, 1e-6);
 }
 
-/// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells`
-/// cells.
+/// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells` cells.
 double largest_error(solver::Scene scene, int cells) {
   scene.grid.cells = {cells, cells};
   const auto history = exact_history(scene);
@@ -82,8 +79,7 @@ double largest_error(solver::Scene scene, int cells) {
     const Oracle oracle = *history->advance(solution.loads).oracle;
     const Errors errors = compare(solution, oracle);
     twist = std::max(twist, std::abs(oracle.twist_angle));
-    largest = std::max(
-        {largest, std::abs(errors.twist * oracle.twist_angle / twist), std::abs(errors.moment_limit)});
+    largest = std::max({largest, std::abs(errors.twist * oracle.twist_angle / twist), std::abs(errors.moment_limit)});
   };
   solver::solve(scene, {.observer = {.step = compare_step}});
   return largest;

@@ -53,16 +53,14 @@ double motion_error(const Errors& errors) {
   return std::isfinite(errors.twist) ? std::abs(errors.twist) : errors.displacement;
 }
 double motion(const Oracle& oracle) {
-  return oracle.moment != 0.0 || oracle.twist_angle != 0.0 ? std::abs(oracle.twist_angle)
-                                                           : size(oracle.displacement);
+  return oracle.moment != 0.0 || oracle.twist_angle != 0.0 ? std::abs(oracle.twist_angle) : size(oracle.displacement);
 }
 
 // The promised accuracy of first loading at 128 cells, with the pressure solved on the same grid.
 constexpr double kMotionAt128 = 2e-4;
 constexpr double kStepTractionAt128 = 1e-2;  // L1
-// Twist, displacement and energy are off by the gap of either answer, 1e-8 of its energy; tractions by its
-// root, and in L2 by some six times that: waves of a cell's length are 30 to 60 times softer than the
-// contact.
+// Twist, displacement and energy are off by the gap of either answer, 1e-8 of its energy; tractions by its root, and in
+// L2 by some six times that: waves of a cell's length are 30 to 60 times softer than the contact.
 constexpr double kMotionToGap = 1e-6;
 constexpr double kTractionToGap = 1e-3;
 
@@ -94,8 +92,7 @@ void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radi
     EXPECT_LE(motion_error(errors) * motion(exact), 5.0 * kMotionAt128 * largest);
     EXPECT_LE(std::abs(errors.dissipated) * exact.dissipated, 5.0 * kMotionAt128 * first_lost);
     EXPECT_LE(errors.traction.at_centres.l1, kStepTractionAt128);
-    EXPECT_LE(std::abs(errors.stick_radius) * exact.stick_radius,
-              0.5 * exact.contact_radius / cells_to_the_radius);
+    EXPECT_LE(std::abs(errors.stick_radius) * exact.stick_radius, 0.5 * exact.contact_radius / cells_to_the_radius);
   }
 }
 
@@ -192,9 +189,8 @@ TEST(HistoryComparison, OneStepIsEnoughWhereSlipAdvances) {
   }
 }
 
-/// A rising normal load that outruns the force sticks throughout; a step that brings it first, then the
-/// force, slips at the edge. The error is of first order in the size of the steps; the answer is the exact
-/// one of the staircase.
+/// A rising normal load that outruns the force sticks throughout; a step that brings it first, then the force, slips at
+/// the edge. The error is of first order in the size of the steps; the answer is the exact one of the staircase.
 TEST(HistoryComparison, AForceThatRisesWithItsNormalLoadNeedsSmallSteps) {
   for (const auto& [from, to] :
        {Path{{1000, 50}, {1500, 80}}, Path{{1000, 50}, {1500, 20}}, Path{{100, 0}, {1000, 50}}}) {
@@ -250,11 +246,9 @@ double stick_ratio_error(Scene sphere, int steps) {
 /// the punch's, with an error of first order in the steps.
 TEST(HistoryComparison, SpherePressedOnAnotherMaterialInSteps) {
   const Scene goodman = on_cells(against_rigid(solver::Coupling::pressure), 64);
-  EXPECT_NEAR(std::log(stick_ratio_error(goodman, 2) / stick_ratio_error(goodman, 16)) / std::log(8.0), 1.0,
-              0.15);
+  EXPECT_NEAR(std::log(stick_ratio_error(goodman, 2) / stick_ratio_error(goodman, 16)) / std::log(8.0), 1.0, 0.15);
   const Scene spence = on_cells(against_rigid(solver::Coupling::full), 48);
-  EXPECT_NEAR(std::log(stick_ratio_error(spence, 2) / stick_ratio_error(spence, 8)) / std::log(4.0), 1.0,
-              0.15);
+  EXPECT_NEAR(std::log(stick_ratio_error(spence, 2) / stick_ratio_error(spence, 8)) / std::log(4.0), 1.0, 0.15);
 }
 
 // ------------------------------------------------------------------ one load
@@ -298,8 +292,7 @@ TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
     Solution bad = solution;
     bad.pressure[cell] = std::numeric_limits<double>::quiet_NaN();
     const FieldError pressure = compare(bad, oracle).pressure;
-    for (const double error : {pressure.l1, pressure.l2, pressure.max})
-      EXPECT_TRUE(std::isnan(error)) << cell;
+    for (const double error : {pressure.l1, pressure.l2, pressure.max}) EXPECT_TRUE(std::isnan(error)) << cell;
     for (const Eigen::Index component : {0, 256}) {
       bad = solution;
       bad.traction[component + cell] = std::numeric_limits<double>::quiet_NaN();

@@ -21,8 +21,7 @@ FrictionLaw law_of(FrictionKind kind, double exponent = 1.0) {
 
 const std::vector<FrictionLaw>& laws() {
   static const std::vector<FrictionLaw> all{law_of(FrictionKind::tresca), law_of(FrictionKind::capped),
-                                            law_of(FrictionKind::power, 0.5),
-                                            law_of(FrictionKind::power, 2.0 / 3.0)};
+                                            law_of(FrictionKind::power, 0.5), law_of(FrictionKind::power, 2.0 / 3.0)};
   return all;
 }
 
@@ -60,9 +59,7 @@ TEST(FrictionLawOracle, FollowsMasingsRule) {
     const auto history = exact_history(scene);
     history->advance(scene.steps[0]);
     const Oracle back = history->advance(scene.steps[1]).oracle.value();
-    const auto first_loading = [&](double ratio) {
-      return find_oracle(under(law, ratio)).oracle->twist_angle;
-    };
+    const auto first_loading = [&](double ratio) { return find_oracle(under(law, ratio)).oracle->twist_angle; };
     const double expected = first_loading(0.8) - 2.0 * first_loading(0.6);
     EXPECT_NEAR(back.twist_angle / expected, 1.0, 1e-12);
   }

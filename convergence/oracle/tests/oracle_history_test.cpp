@@ -88,8 +88,8 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
       const CarriedLoads carried = loads_carried_by(exact[i]);
       EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadratureOverFronts) << body << i;
       for (const int axis : {0, 1}) {
-        EXPECT_NEAR(carried.force * exact[i].place.direction[axis] / friction,
-                    scene.steps[i].force[axis] / friction, kQuadratureOverFronts)
+        EXPECT_NEAR(carried.force * exact[i].place.direction[axis] / friction, scene.steps[i].force[axis] / friction,
+                    kQuadratureOverFronts)
             << body << i;
         EXPECT_EQ(exact[i].force[axis], scene.steps[i].force[axis]);
       }
@@ -104,13 +104,12 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   EXPECT_NEAR(a.moment, sign * b.moment, kHistoryTolerance * std::abs(b.friction.moment_limit));
   EXPECT_NEAR(a.twist_angle, sign * b.twist_angle, kHistoryTolerance * std::abs(b.twist_angle));
   for (const int axis : {0, 1}) {
-    EXPECT_NEAR(a.displacement[axis], sign * b.displacement[axis],
-                kHistoryTolerance * std::abs(b.displacement[axis]));
+    EXPECT_NEAR(a.displacement[axis], sign * b.displacement[axis], kHistoryTolerance * std::abs(b.displacement[axis]));
   }
   for (const double part : {0.1, 0.6, 0.95}) {
     const double r = part * a.contact_radius;
-    const double along = a.place.direction[0] * b.place.direction[0] +
-                         a.place.direction[1] * b.place.direction[1];  // 0: torsion
+    const double along =
+        a.place.direction[0] * b.place.direction[0] + a.place.direction[1] * b.place.direction[1];  // 0: torsion
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
                 kHistoryTolerance * b.friction.reference_bound);
   }
@@ -120,11 +119,10 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
 TEST(OracleHistory, AClosedCycleOfTorsionLosesItsLoop) {
   constexpr double shear_modulus = 210e9 / (4.0 * 1.3);
   for (const double ratio : {0.1, 0.8}) {
-    const std::vector<Oracle> exact =
-        oracles(twisted(example("paper"), {ratio, -ratio, ratio, -ratio, ratio}));
+    const std::vector<Oracle> exact = oracles(twisted(example("paper"), {ratio, -ratio, ratio, -ratio, ratio}));
     const double friction = 0.1 * 1000.0;
-    const double loop = analytic::energy_lost_per_cycle(ratio) * friction * friction /
-                        (shear_modulus * exact[0].contact_radius);
+    const double loop =
+        analytic::energy_lost_per_cycle(ratio) * friction * friction / (shear_modulus * exact[0].contact_radius);
     EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kHistoryTolerance);
     EXPECT_NEAR((exact[3].dissipated + exact[4].dissipated) / loop, 1.0, kHistoryTolerance);
     EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kHistoryTolerance);
@@ -142,13 +140,11 @@ TEST(OracleHistory, AClosedCycleOfForceLosesItsLoop) {
       oracles(pushed(plain, {{1000.0, x * friction}, {1000.0, -x * friction}, {1000.0, x * friction}}));
   const double unit = friction * friction / (shear_modulus * exact[0].contact_radius);
   const double loop =
-      1.8 * unit *
-      (1.0 - std::pow(1.0 - x, 5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + std::pow(1.0 - x, 2.0 / 3.0)));
+      1.8 * unit * (1.0 - std::pow(1.0 - x, 5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + std::pow(1.0 - x, 2.0 / 3.0)));
   EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kHistoryTolerance);
   EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kHistoryTolerance);
   const double displacement = 0.375 * unit / friction * (1.0 - std::pow(1.0 - x, 2.0 / 3.0));
-  EXPECT_NEAR(std::hypot(exact[0].displacement[0], exact[0].displacement[1]) / displacement, 1.0,
-              kHistoryTolerance);
+  EXPECT_NEAR(std::hypot(exact[0].displacement[0], exact[0].displacement[1]) / displacement, 1.0, kHistoryTolerance);
   EXPECT_NEAR(exact[0].stick_radius / exact[0].contact_radius, std::cbrt(1.0 - x), kHistoryTolerance);
 }
 
@@ -161,12 +157,11 @@ TEST(OracleHistory, OneBodyMayBeRigid) {
   const double unit = 100.0 / (105e9 * a);  // mu W/(G a)
   const Oracle force = oracles(pushed(scene, {{1000.0, 50.0}})).front();
   EXPECT_NEAR(force.contact_radius / a, 1.0, kHistoryTolerance);
-  EXPECT_NEAR(std::hypot(force.displacement[0], force.displacement[1]) /
-                  (0.375 * unit * (1.0 - std::pow(0.5, 2.0 / 3.0))),
-              1.0, kHistoryTolerance);
+  EXPECT_NEAR(
+      std::hypot(force.displacement[0], force.displacement[1]) / (0.375 * unit * (1.0 - std::pow(0.5, 2.0 / 3.0))), 1.0,
+      kHistoryTolerance);
   const Oracle torsion = oracles(twisted(scene, {0.5})).front();
-  EXPECT_NEAR(torsion.twist_angle / (analytic::from_moment_ratio(0.5).twist * unit / a), 1.0,
-              kHistoryTolerance);
+  EXPECT_NEAR(torsion.twist_angle / (analytic::from_moment_ratio(0.5).twist * unit / a), 1.0, kHistoryTolerance);
 }
 
 /// The twists that a history of moments goes through bring back its moments.
@@ -189,8 +184,7 @@ TEST(OracleHistory, EndsWithGrossSlip) {
   twist.steps[1].torsion = solver::Twist{1e3};
   Scene twist_back = moment;
   twist_back.steps[1].torsion = solver::Twist{-1e3};
-  const Scene force =
-      pushed(without_contraction(example("paper")), {{1000.0, 50.0}, {900.0, -90.1}, {1000.0, 0.0}});
+  const Scene force = pushed(without_contraction(example("paper")), {{1000.0, 50.0}, {900.0, -90.1}, {1000.0, 0.0}});
   for (const Scene& scene : {moment, twist, twist_back, force}) {
     const std::vector<OracleAnswer> all = answers(scene);
     EXPECT_TRUE(all[0].oracle);

@@ -18,8 +18,7 @@ Oracle expect_hertzs(const solver::Scene& scene) {
   const Oracle& oracle = answer.oracle.value();
   const solver::Surface& body = scene.surfaces.front();
   const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
-  const solver::HertzContact hertz =
-      solver::hertz_contact(1000.0, body.radius_1, body.radius_2, effective_modulus);
+  const solver::HertzContact hertz = solver::hertz_contact(1000.0, body.radius_1, body.radius_2, effective_modulus);
   EXPECT_NEAR(oracle.longer_semi_axis() / std::max(hertz.semi_axis_1, hertz.semi_axis_2), 1.0, 1e-13);
   EXPECT_NEAR(oracle.shorter_semi_axis() / std::min(hertz.semi_axis_1, hertz.semi_axis_2), 1.0, 1e-13);
   EXPECT_NEAR(oracle.normal.peak_pressure / hertz.peak_pressure, 1.0, 1e-13);

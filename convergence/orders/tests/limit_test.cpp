@@ -16,9 +16,7 @@ constexpr double kLimit = 2.0;
 constexpr double kFactor = -0.3;
 constexpr double kRounding = 1e-11;  // of differences of numbers near 2, over the least change, above 1e-3
 
-Meshes values(double order, const std::vector<double>& sizes = kHalves) {
-  return power(order, sizes, kFactor, kLimit);
-}
+Meshes values(double order, const std::vector<double>& sizes = kHalves) { return power(order, sizes, kFactor, kLimit); }
 
 void expect_found(const Limit& found, double order, double finest, double factor) {
   EXPECT_NEAR(found.value, kLimit, kRounding);
@@ -39,11 +37,9 @@ TEST(Limit, OfAPowerIsFound) {
   EXPECT_NEAR(richardson_limit(values(1.0, unequal), 1.0).order.value, 1.0, 1e-14);
 }
 
-/// Orders that the method does not trust: the safety factor is 3, about the finest value's distance from the
-/// limit.
+/// Orders that the method does not trust: the safety factor is 3, about the finest value's distance from the limit.
 TEST(Limit, HighOrdersAreMistrusted) {
-  expect_found(richardson_limit(values(2.5, {1.0, 0.5, 0.25}), 2.5), 2.5, kLimit + kFactor * std::pow(2, -5),
-               3.0);
+  expect_found(richardson_limit(values(2.5, {1.0, 0.5, 0.25}), 2.5), 2.5, kLimit + kFactor * std::pow(2, -5), 3.0);
   const Limit found = least_squares_limit(values(4.0), 2.0);
   EXPECT_EQ(found.order.verdict, superconvergent);
   EXPECT_EQ(found.method.find("h^2,"), found.method.find("h^")) << found.method;  // no term of order 4
@@ -177,9 +173,8 @@ TEST(Limit, NoiseOfThreeValuesOpensOrderAndLimit) {
   EXPECT_NEAR(found.order.high - 1.0, half, 1e-4 * half);
   EXPECT_NEAR(1.0 - found.order.low, half, 1e-4 * half);
   const double bend = meshes[0].value - 2.0 * meshes[1].value + meshes[2].value;
-  const double doubt =
-      noise / std::abs(bend) *
-      std::hypot(meshes[2].value - kLimit, 2.0 * (kLimit - meshes[1].value), meshes[0].value - kLimit);
+  const double doubt = noise / std::abs(bend) *
+                       std::hypot(meshes[2].value - kLimit, 2.0 * (kLimit - meshes[1].value), meshes[0].value - kLimit);
   EXPECT_NEAR(found.uncertainty, 1.25 * 0.075 + doubt, 1e-4 * doubt);
 }
 
@@ -245,8 +240,7 @@ TEST(Limit, OfKnownPowersLiesWithinItsUncertainty) {
     const Limit found = expansion_limit(made(sizes,
                                              [&](double h) {
                                                double sum = kLimit;
-                                               for (const auto& [power, by] : terms)
-                                                 sum += by * std::pow(h, power);
+                                               for (const auto& [power, by] : terms) sum += by * std::pow(h, power);
                                                return sum;
                                              }),
                                         aligned_edge_powers(), 1.0);

@@ -28,8 +28,7 @@ inline Meshes made(const std::vector<double>& values) {
 }
 
 /// limit + factor size^order.
-inline Meshes power(double order, const std::vector<double>& sizes = kHalves, double factor = 0.3,
-                    double limit = 0.0) {
+inline Meshes power(double order, const std::vector<double>& sizes = kHalves, double factor = 0.3, double limit = 0.0) {
   return made(sizes, [&](double size) { return limit + factor * std::pow(size, order); });
 }
 

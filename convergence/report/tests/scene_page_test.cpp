@@ -100,8 +100,7 @@ TEST_P(ScenePage, HasThePartsOfItsScene) {
     }
     const std::string key = row["key"];
     if (row["error"].is_number() && row["basis"] != "exact") {
-      EXPECT_NEAR(row["error"].get<double>(), row["mesh"].get<double>() + row["path"].get<double>(), 1e-12)
-          << row;
+      EXPECT_NEAR(row["error"].get<double>(), row["mesh"].get<double>() + row["path"].get<double>(), 1e-12) << row;
     }
     if (row["basis"] == "exact" && kJudged.contains(key)) {
       EXPECT_LE(std::abs(row["error"].get<double>()), mesh_bound(GetParam(), key, page["answer"])) << row;
@@ -119,8 +118,7 @@ TEST_P(ScenePage, HasThePartsOfItsScene) {
 /// error. The error of a solve is at least the uncertainty of the reference.
 TEST_F(ScenePage, CountsTheLengthOfSteps) {
   const Json made = page(file("dissimilar"), {{"twist_angle", 1e-2}});
-  const double stated =
-      made["answer"]["resolved"]["path"].get<double>() / made["answer"]["twist_angle"].get<double>();
+  const double stated = made["answer"]["resolved"]["path"].get<double>() / made["answer"]["twist_angle"].get<double>();
   ASSERT_GT(stated, 0.01);
   for (const Json& row : made["numbers"]) {
     if (row["key"] == "twist_angle") {

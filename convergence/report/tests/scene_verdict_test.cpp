@@ -30,8 +30,7 @@ void set_verdict(PaperValidation& paper, std::size_t row, HardVerdict verdict) {
 PaperValidation paper() {
   PaperValidation found;
   found.hard.rows.resize(3);
-  for (const std::size_t i : {0U, 1U, 2U})
-    set_verdict(found, i, i < 2 ? HardVerdict::certified : HardVerdict::refused);
+  for (const std::size_t i : {0U, 1U, 2U}) set_verdict(found, i, i < 2 ? HardVerdict::certified : HardVerdict::refused);
   found.peers = {{.program = "P", .expected = "good", .verdict = "good"},
                  {.program = "Q", .expected = "bad", .verdict = "bad"}};
   found.gates = {gate("wide", Outcome::passed, 0.1), gate("known", Outcome::failed_as_expected, 30.0),
@@ -48,9 +47,8 @@ Headline headline(const PaperValidation& paper, double twist = 1e-5, const char*
 }
 
 bool says(const Headline& headline, const std::string& words) {
-  return std::ranges::any_of(headline.findings, [&](const Finding& finding) {
-    return finding.line.find(words) != std::string::npos;
-  });
+  return std::ranges::any_of(headline.findings,
+                             [&](const Finding& finding) { return finding.line.find(words) != std::string::npos; });
 }
 
 TEST(Headline, IsGoodWhereEverythingHolds) {
@@ -118,12 +116,8 @@ TEST(HeadlineChanges, StayWhereNothingMoreHasChanged) {
 /// A study of meshes with an order of the twist.
 StudyResult study_with(OrderVerdict verdict, double low, double high, double expected = 2.0) {
   QuantityResult twist{.path = "twist_angle"};
-  twist.order = {.value = 0.5 * (low + high),
-                 .low = low,
-                 .high = high,
-                 .constant = 1.0,
-                 .verdict = verdict,
-                 .why = "so"};
+  twist.order = {
+      .value = 0.5 * (low + high), .low = low, .high = high, .constant = 1.0, .verdict = verdict, .why = "so"};
   twist.expected.value = expected;
   SeriesResult series{.name = "one"};
   series.quantities.push_back(twist);
@@ -145,8 +139,7 @@ TEST(Order, CountsOnlyWhereItIsShown) {
        {Case{asymptotic, 1.6, 2.5, Shown::holds}, Case{superconvergent, 2.4, 2.6, Shown::holds},
         Case{preasymptotic, 1.2, 1.6, Shown::fails}, Case{preasymptotic, 0.5, 3.0, Shown::open},
         Case{oscillatory, -1.7, 16.0, Shown::open}, Case{too_few, -1.7, 16.0, Shown::open},
-        Case{OrderVerdict::floor, -1.7, 16.0, Shown::open},
-        Case{preasymptotic, 1.9, 2.1, Shown::open, kNaN}}) {
+        Case{OrderVerdict::floor, -1.7, 16.0, Shown::open}, Case{preasymptotic, 1.9, 2.1, Shown::open, kNaN}}) {
     const Finding found = judge_order(study_with(verdict, low, high, expected), "twist_angle", "twist");
     EXPECT_EQ(found.shown, shown) << to_string(verdict) << low;
   }

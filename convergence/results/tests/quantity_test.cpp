@@ -28,8 +28,8 @@ TEST(Quantity, IsFoundByItsPath) {
   }
   EXPECT_EQ(find_quantity(result, "none.deeper").reason, "because");
   EXPECT_EQ(find_quantity(result, "a.b.c.e").reason, "");
-  EXPECT_THAT(quantity_paths(result), ElementsAre("a.b.c.d", "a.b.c.d", "a.b.c.e", "list[0].x",
-                                                  "list[1].x[0]", "list[1].x[1]", "none", "none_reason"));
+  EXPECT_THAT(quantity_paths(result), ElementsAre("a.b.c.d", "a.b.c.d", "a.b.c.e", "list[0].x", "list[1].x[0]",
+                                                  "list[1].x[1]", "none", "none_reason"));
 }
 
 }  // namespace

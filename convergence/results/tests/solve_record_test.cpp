@@ -56,8 +56,7 @@ TEST(SolveRecord, OfARunWithoutAnAnswerComesBackFromJson) {
 }
 
 TEST(SolveRecord, IsNotReadFromOtherJson) {
-  for (const char* text :
-       {"{}", "[]", "{\"status\": \"good\"}", "{\"name\": 1, \"status\": \"converged\"}"}) {
+  for (const char* text : {"{}", "[]", "{\"status\": \"good\"}", "{\"name\": 1, \"status\": \"converged\"}"}) {
     EXPECT_THROW(from_json(Json::parse(text)), solver::InputError) << text;
   }
 }

@@ -43,15 +43,13 @@ TEST_F(PathOfLoads, WhatFewPartsLeaveOpenIsStatedWhereSlipTurns) {
   const double shift = std::abs(one.displacement[0] - many.displacement[0]);
   EXPECT_GT(one.resolution.path.displacement, shift);
   // It falls like one over the number of parts, once there are many.
-  EXPECT_LT(solved(push_and_twist(1), {"solver.substeps=32"}).resolution.path.twist,
-            0.2 * one.resolution.path.twist);
+  EXPECT_LT(solved(push_and_twist(1), {"solver.substeps=32"}).resolution.path.twist, 0.2 * one.resolution.path.twist);
 }
 
 TEST_F(PathOfLoads, ATwistOfASurfaceOfRevolutionHasNoPath) {
   const std::string loop = "[[step]]\nmoment_ratio = 0.9\n[[step]]\nmoment_ratio = -0.4\n";
   EXPECT_EQ(solved(loop).resolution.path.twist, 0.0);
-  EXPECT_GT(solved(loop, {"contact.coupling=\"pressure\"", "lower.young_modulus=70e9"}).resolution.path.twist,
-            0.0);
+  EXPECT_GT(solved(loop, {"contact.coupling=\"pressure\"", "lower.young_modulus=70e9"}).resolution.path.twist, 0.0);
 }
 
 // An ellipse's error falls like 1/n. Its extrapolated twist is that of four times as many parts, extrapolated
@@ -84,8 +82,7 @@ TEST_F(PathOfLoads, ATwistOfConesOnOneAxisHasNoPath) {
   const auto path = [&](const std::string& at) {
     const std::string cone = "[[upper.shape]]\nshape = \"cone\"\nslope = 0.005\n";
     const std::string text = with_surface("", cone + cone + "at = " + at + "\n");
-    return solve_with_path(read(text, {"grid.cells=[24,24]", "grid.extent=[2e-3,2e-3]"}))
-        .resolution.path.twist;
+    return solve_with_path(read(text, {"grid.cells=[24,24]", "grid.extent=[2e-3,2e-3]"})).resolution.path.twist;
   };
   EXPECT_EQ(path("[0.0, 0.0]"), 0.0);
   EXPECT_GT(path("[2e-4, 0.0]"), 0.0);

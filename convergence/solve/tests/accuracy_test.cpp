@@ -91,8 +91,8 @@ TEST(AccuracyChoice, TakesNoFewerCellsForASmallerError) {
 
 /// The scene's model on the chosen cells has the requested number of cells across its contact.
 TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
-  for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
-           {}, {"grid.extent=[3e-3,3e-3]"}, {"grid.extent=[1.2e-3,2e-3]"}}) {
+  for (const std::vector<std::string>& overrides :
+       std::vector<std::vector<std::string>>{{}, {"grid.extent=[3e-3,3e-3]"}, {"grid.extent=[1.2e-3,2e-3]"}}) {
     const solver::Scene at = example("paper", overrides);
     const ContactOnGrid contact = contact_on_grid(at);
     const solver::Index cells = cells_for(contact, 50.0);
@@ -174,9 +174,8 @@ SolvedScene made_answer(const solver::Scene& at, double constant, double order) 
 }
 
 AccurateAnswer made_accuracy(double error, double constant, double order) {
-  return solve_to_accuracy(punch(), {error}, [=](const solver::Scene& at, solver::Detail) {
-    return made_answer(at, constant, order);
-  });
+  return solve_to_accuracy(punch(), {error},
+                           [=](const solver::Scene& at, solver::Detail) { return made_answer(at, constant, order); });
 }
 
 TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
@@ -261,8 +260,7 @@ TEST(ReachedError, OfANumberIsThreeTimesTheExtrapolatedDistance) {
                                                                 {"flat_punch", AccuracyOf::twist, 1.0},
                                                                 {"rough_sphere", AccuracyOf::twist, 1.0}}) {
     const ReachedError found =
-        TwoMeshes(scene, scene == "flat_punch" ? "load.moment_ratio=0.9" : kHalfTheLimit, 1.0 + kApart)
-            .error(of);
+        TwoMeshes(scene, scene == "flat_punch" ? "load.moment_ratio=0.9" : kHalfTheLimit, 1.0 + kApart).error(of);
     EXPECT_EQ(found.how, "estimated") << scene;
     EXPECT_NEAR(found.error, 3.0 * apart / (std::exp2(order) - 1.0), 1e-6) << scene;
     EXPECT_NE(found.why.find("24 x 24"), std::string::npos) << scene;

@@ -28,8 +28,7 @@ TEST(ContinuumInterval, HoldsTheExactTwistOfThePaper) {
   }
 }
 
-/// The interval holds the number on cells a quarter as long, whose own error is far smaller than the
-/// interval.
+/// The interval holds the number on cells a quarter as long, whose own error is far smaller than the interval.
 void expect_held(Scene scene, const char* name) {
   const ContinuumRecord found = continuum_record(scene, solve(scene));
   for (Index& cells : scene.grid.cells) cells *= 4;
@@ -37,7 +36,7 @@ void expect_held(Scene scene, const char* name) {
   const double number = found.number == "twist_angle" ? fine.twist_angle
                         : found.number == "moment"    ? fine.moment
                         : found.number == "force"     ? std::hypot(fine.force[0], fine.force[1])
-                                                  : std::hypot(fine.displacement[0], fine.displacement[1]);
+                                                      : std::hypot(fine.displacement[0], fine.displacement[1]);
   EXPECT_LT(found.low, number) << name;
   EXPECT_GT(found.high, number) << name;
   EXPECT_LT(found.high - found.low, 0.3 * number) << name;

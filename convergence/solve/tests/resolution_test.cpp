@@ -75,9 +75,7 @@ const NarrowRing kNarrowRings[] = {
     {"cone", "cone", {}},
     {"tresca", "paper", {"contact.friction_law=\"tresca\"", "contact.shear_strength=5e7"}},
     {"capped", "capped_friction", {}},
-    {"power",
-     "paper",
-     {"contact.friction_law=\"power\"", "contact.friction_exponent=0.5", "contact.friction=1e4"}},
+    {"power", "paper", {"contact.friction_law=\"power\"", "contact.friction_exponent=0.5", "contact.friction=1e4"}},
     {"soft_layer", "coated_sphere", {"lower.layer.young_modulus=60e9"}},
     {"hard_layer", "coated_sphere", {}},
     {"rigid_base", "coated_sphere", {"lower.young_modulus=1e16", "lower.layer.thickness=5e-4"}},
@@ -92,10 +90,9 @@ bool is_covered_area(const Json& area, double radius) {
   return std::abs(off) <= area["uncertainty"].get<double>();
 }
 
-// With little slip the contact is a bonded punch on the contact's cells, and the twist depends on their area,
-// hence on the position of the grid. Constants fitted on grids two cells larger than the contact would fail
-// here in a sixth to a third of the scenes. Under Tresca's law the counted stick area contains a slip ring
-// narrower than its cells.
+// With little slip the contact is a bonded punch on the contact's cells, and the twist depends on their area, hence on
+// the position of the grid. Constants fitted on grids two cells larger than the contact would fail here in a sixth to a
+// third of the scenes. Under Tresca's law the counted stick area contains a slip ring narrower than its cells.
 TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
   std::mt19937 random(53);
   std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -115,8 +112,7 @@ TEST_P(StatedOfNarrowRings, CoversTwistAndAreas) {
     if (!is_covered(json, "twist_error")) ++twists;
     if (!is_covered_area(json["contact_area"], json["exact"]["contact_radius"])) ++areas;
     if (!is_covered_area(json["stick_area"], json["exact"]["stick_radius"])) ++areas;
-    over_error.push_back(json["resolved"]["uncertainty"].get<double>() /
-                         std::abs(json["twist_error"].get<double>()));
+    over_error.push_back(json["resolved"]["uncertainty"].get<double>() / std::abs(json["twist_error"].get<double>()));
   }
   EXPECT_LE(twists, 1);
   EXPECT_LE(areas, 1);  // of two a scene
@@ -167,8 +163,7 @@ TEST(StatedOfHistories, CoversRandomHistoriesOfTorsion) {
       const Json json = to_json(solve_scene(scene).record);
       ASSERT_EQ(json["status"], "converged");
       if (!is_covered(json, "twist_error")) ++beyond;
-      over_error.push_back(json["resolved"]["uncertainty"].get<double>() /
-                           std::abs(json["twist_error"].get<double>()));
+      over_error.push_back(json["resolved"]["uncertainty"].get<double>() / std::abs(json["twist_error"].get<double>()));
     }
   }
   EXPECT_LE(beyond, 1);  // of a hundred
@@ -214,9 +209,9 @@ TEST(StatedOfHistories, CoversPressuresThatAreNotSolved) {
     for (const int cells : {16, 31, 48, 64}) {
       for (const double ratio : {1e-3, 0.01, 0.3, 0.9}) {
         SCOPED_TRACE(testing::Message() << pressure << ", " << cells << " cells, " << ratio);
-        const Scene scene = scene_of(
-            "paper", cells,
-            {fmt::format("contact.pressure=\"{}\"", pressure), fmt::format("load.moment_ratio={}", ratio)});
+        const Scene scene =
+            scene_of("paper", cells,
+                     {fmt::format("contact.pressure=\"{}\"", pressure), fmt::format("load.moment_ratio={}", ratio)});
         expect_covered(to_json(solve_scene(scene).record), "twist_error");
       }
     }

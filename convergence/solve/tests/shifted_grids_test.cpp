@@ -60,9 +60,8 @@ TEST(ShiftedGrids, SpreadTheFrontEvenlyOverACell) {
 TEST(ShiftedGrids, CancelAStaircaseOfOnePeriod) {
   const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
   const ContactOnGrid contact = contact_on_grid(scene);
-  const ShiftedMean mean =
-      mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact,
-                              Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
+  const ShiftedMean mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact,
+                                                   Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
   EXPECT_LE(std::abs(mean.error), 1e-4);
   EXPECT_NEAR(mean.uncertainty, 0.2 * 1e-3 * std::sqrt(0.75), 5e-5);  // of a sine, on three points
   const EndRecord& end = mean.answer.record.end;
@@ -112,10 +111,8 @@ TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
   int solves = 0;
   const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
                                             [&](const solver::Scene& at, solver::Detail detail) {
-                                              SolvedScene answer =
-                                                  Staircase{.front = 1e-4, .height = 0.0}(at, detail);
-                                              if (++solves == 2)
-                                                answer.solution.status = solver::Status::not_converged;
+                                              SolvedScene answer = Staircase{.front = 1e-4, .height = 0.0}(at, detail);
+                                              if (++solves == 2) answer.solution.status = solver::Status::not_converged;
                                               return answer;
                                             });
   EXPECT_EQ(solves, 2);
@@ -124,11 +121,8 @@ TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
 
 TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   const auto take = [](const char* name, const std::vector<std::string>& overrides = {},
-                       AccuracyOf of = AccuracyOf::twist) {
-    return takes_shifted_grids(example(name, overrides), of);
-  };
-  for (const char* name : {"paper", "ellipse", "cone", "off_centre", "fretting_torsion"})
-    EXPECT_TRUE(take(name));
+                       AccuracyOf of = AccuracyOf::twist) { return takes_shifted_grids(example(name, overrides), of); };
+  for (const char* name : {"paper", "ellipse", "cone", "off_centre", "fretting_torsion"}) EXPECT_TRUE(take(name));
   for (const char* name : {"flat_punch", "rough_sphere", "honed_surface"}) EXPECT_FALSE(take(name));
   EXPECT_FALSE(take("paper", {"contact.pressure=\"hertz\""}));
   EXPECT_FALSE(take("paper", {"upper.ends_at_grid_edge=true"}));
@@ -140,9 +134,7 @@ TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
 
 // All grids of a slender contact have the same error, since stick area and contact differ in shape.
 TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
-  const auto solve = [](const solver::Scene& at, solver::Detail detail) {
-    return solve_scene(at, {.detail = detail});
-  };
+  const auto solve = [](const solver::Scene& at, solver::Detail detail) { return solve_scene(at, {.detail = detail}); };
   constexpr double kWanted = 5e-3;
   int beyond = 0;
   // Each night all twelve scenes, else three of them; the error of one exceeds its uncertainty.
@@ -200,9 +192,7 @@ class RandomScenes {
   double target() { return std::pow(10.0, uniform(-3.3, -2.0)); }
 
  private:
-  static std::string set(const std::string& key, double value) {
-    return fmt::format("{}={:.17g}", key, value);
-  }
+  static std::string set(const std::string& key, double value) { return fmt::format("{}={:.17g}", key, value); }
   double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random_); }
   /// Little slip, both, little stick.
   double moment_ratio() {
@@ -223,9 +213,9 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
   for (int i = 0; i < scenes; ++i) {
     const solver::Scene scene = random.next();
     const double target = random.target();
-    const AccurateAnswer found = solve_to_accuracy(
-        scene, {target},
-        [](const solver::Scene& at, solver::Detail detail) { return solve_scene(at, {.detail = detail}); });
+    const AccurateAnswer found = solve_to_accuracy(scene, {target}, [](const solver::Scene& at, solver::Detail detail) {
+      return solve_scene(at, {.detail = detail});
+    });
     ASSERT_TRUE(found.reached()) << i << ": " << *found.accuracy.grid->not_reached;
     const double error = found.accuracy.error();
     const double uncertainty = found.accuracy.grid->uncertainty.value();
@@ -233,9 +223,9 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
     if (error <= uncertainty) {
       ++held;
     } else {
-      missed += fmt::format("{}: {} of the limit, target {:.2g}, error {:.2g} > {:.2g}\n", i,
-                            *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion), target,
-                            error, uncertainty);
+      missed +=
+          fmt::format("{}: {} of the limit, target {:.2g}, error {:.2g} > {:.2g}\n", i,
+                      *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion), target, error, uncertainty);
     }
   }
   EXPECT_GE(held, scenes * 19 / 20) << missed;

@@ -1,6 +1,5 @@
-// The numbers of a study of made results with known order, constant, limit, spread and noise; and of one
-// whose results are missing: means over the others, null with a reason for an unknown number, the failed
-// runs.
+// The numbers of a study of made results with known order, constant, limit, spread and noise; and of one whose results
+// are missing: means over the others, null with a reason for an unknown number, the failed runs.
 
 #include "convergence/studies/study_judgement.hpp"
 
@@ -16,8 +15,7 @@ namespace {
 using testing::HasSubstr;
 
 const std::string kTwist = "twist_error";
-const Json kKilled{
-    {"status", "failed"}, {"message", "its process was killed by signal 9"}, {"run", "paper, this one"}};
+const Json kKilled{{"status", "failed"}, {"message", "its process was killed by signal 9"}, {"run", "paper, this one"}};
 
 /// A solve with one number; reference: the relative uncertainty of its exact answer, NaN: it has none.
 Json solved(double value, double reference = 1e-15, const std::string& quantity = kTwist) {
@@ -45,8 +43,7 @@ struct MadeStudy {
 
   std::size_t meshes() const { return series.meshes.size(); }
 
-  /// A power of (cell size / cell size of the coarsest mesh), for the first grid and for the mean of the
-  /// grids.
+  /// A power of (cell size / cell size of the coarsest mesh), for the first grid and for the mean of the grids.
   double of_first(std::size_t mesh, double power = 2.0) const {
     return std::pow(series.meshes[mesh].grids[0].size / series.meshes[0].grids[0].size, power);
   }
@@ -68,8 +65,7 @@ struct MadeStudy {
     const auto with = [&](double value) { return solved(value, reference, quantity); };
     for (const double value : grids) at.grids.push_back(with(value));
     at.tightened = with(tightened);
-    if (series.meshes[mesh].rounded)
-      at.rounded = {with(tightened + rounding), with(tightened - 0.5 * rounding)};
+    if (series.meshes[mesh].rounded) at.rounded = {with(tightened + rounding), with(tightened - 0.5 * rounding)};
   }
 
   Json judged() const { return to_json(judge_series(study, series, results)); }
@@ -318,8 +314,7 @@ TEST(Budget, HasTheLargerOfTwoRoundingsWhereBothAreKnown) {
   for (const std::vector<Json>& rounded : std::vector<std::vector<Json>>{{kKilled, up}, {up, kKilled}, {}})
     EXPECT_TRUE(std::isnan(budget(tightened, rounded).rounding));
   const Budget without = budget(kKilled, {up, up});
-  for (const double part : {without.discretisation, without.iteration, without.rounding})
-    EXPECT_TRUE(std::isnan(part));
+  for (const double part : {without.discretisation, without.iteration, without.rounding}) EXPECT_TRUE(std::isnan(part));
 }
 
 TEST(FailedRunsTest, CountsARunOnceAndKeepsTheFirst) {

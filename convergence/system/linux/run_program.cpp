@@ -116,8 +116,7 @@ void kill_descendants() {
 }
 #endif
 
-std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program,
-                              bool guarded) {
+std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program, bool guarded) {
   if (program.empty()) return words;
   std::vector<std::string> all{program, std::string(kTied), std::to_string(getpid())};
   const bool itself = words.front() == program;
@@ -130,8 +129,7 @@ std::vector<std::string> tied(const std::vector<std::string>& words, const std::
 std::string trouble_of(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    return fmt::format("was killed by signal {}{}", signal,
-                       signal == SIGKILL ? ", as where memory runs out" : "");
+    return fmt::format("was killed by signal {}{}", signal, signal == SIGKILL ? ", as where memory runs out" : "");
   }
   return WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with code {}", WEXITSTATUS(status));
 }

@@ -32,8 +32,7 @@ TEST(ExampleProfile, TakesLoadStickRadiusAndTwistAsOne) {
   const analytic::TorsionState state = analytic::from_moment_ratio(0.6, profile);
   EXPECT_NEAR(analytic::from_stick_ratio(state.stick_ratio, profile).moment_ratio, 0.6, 1e-9);
   EXPECT_NEAR(analytic::from_twist(state.twist, profile).moment_ratio, 0.6, 1e-9);
-  EXPECT_NEAR(analytic::traction(state, state.stick_ratio - 1e-9, profile),
-              profile.pressure(state.stick_ratio), 1e-3);
+  EXPECT_NEAR(analytic::traction(state, state.stick_ratio - 1e-9, profile), profile.pressure(state.stick_ratio), 1e-3);
 }
 
 /// A sphere's pressure on 32 x 32 cells, mu p0 = G = a = 1, turned by this twist.
@@ -50,12 +49,10 @@ struct Sphere {
   static solver::SharedLaw law(double compliance) {
     const solver::ElasticPair pair{
         .shear_compliance = 1.0, .poisson_compliance = 0.0, .normal_compliance = 1.0, .mismatch = 0.0};
-    return std::make_shared<solver::WinklerLayer>(std::make_shared<solver::HalfSpaces>(pair), compliance,
-                                                  compliance);
+    return std::make_shared<solver::WinklerLayer>(std::make_shared<solver::HalfSpaces>(pair), compliance, compliance);
   }
   std::unique_ptr<solver::LinearOperator> op(double compliance) const {
-    return solver::make_operator(solver::OperatorKind::dcfft, grid, solver::tangential_kernel(),
-                                 *law(compliance));
+    return solver::make_operator(solver::OperatorKind::dcfft, grid, solver::tangential_kernel(), *law(compliance));
   }
 };
 
@@ -73,8 +70,7 @@ TEST(ExampleMethod, FindsTheExactMoment) {
 /// The example, and the solver's own.
 std::vector<solver::TangentialSolution> by_every_method(const Sphere& sphere, double compliance) {
   const auto op = sphere.op(compliance);
-  return {solve_by_plain_gradient(*op, sphere.problem, 1e-8, 5000),
-          solver::solve_by_paper_method(*op, sphere.problem),
+  return {solve_by_plain_gradient(*op, sphere.problem, 1e-8, 5000), solver::solve_by_paper_method(*op, sphere.problem),
           solver::solve_by_coulomb_method({.law = Sphere::law(compliance)}, sphere.grid, sphere.problem)};
 }
 
@@ -105,8 +101,8 @@ TEST(ExampleLaw, PressesAsAVerySoftLayerAloneWould) {
   constexpr double kCompliance = 1e4;
   const Sphere sphere(0.0);
   const ArrayXd gap = solver::norms(solver::rotation_field(sphere.grid)).square();
-  const solver::NormalSolution solution = solver::solve_normal_contact(
-      {.law = Sphere::law(kCompliance)}, sphere.grid, {.gap = gap, .total_pressure = 1e-2});
+  const solver::NormalSolution solution = solver::solve_normal_contact({.law = Sphere::law(kCompliance)}, sphere.grid,
+                                                                       {.gap = gap, .total_pressure = 1e-2});
   ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
   const ArrayXd expected = (solution.approach - gap).max(0.0) / kCompliance;
   EXPECT_LT((solution.pressure - expected).abs().maxCoeff(), 1e-3 * expected.maxCoeff());

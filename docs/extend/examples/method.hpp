@@ -32,8 +32,8 @@ inline double stiffest(solver::LinearOperator& op, const ArrayXd& contact) {
 /// phi t.q, each projected back onto the friction discs, and onto the moment, whose multiplier is phi/L. g:
 /// displacements by the pressure. Stops on the gap of the certificate.
 inline solver::TangentialSolution solve_by_plain_gradient(solver::LinearOperator& op,
-                                                          const solver::TangentialProblem& problem,
-                                                          double tolerance, int max_iterations) {
+                                                          const solver::TangentialProblem& problem, double tolerance,
+                                                          int max_iterations) {
   solver::require_valid(problem, op.grid());
   const ArrayXd t = solver::rotation_field(op.grid());
   const ArrayXd contact = (problem.friction_bound > 0.0).cast<double>().replicate(2, 1);

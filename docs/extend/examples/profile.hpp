@@ -71,9 +71,7 @@ class ParabolicPressure final : public analytic::Profile {
 
  private:
   /// sqrt(1 - c^2), to all digits.
-  static double root(analytic::StickRadius stick) {
-    return std::sqrt(stick.complement * (1.0 + stick.ratio));
-  }
+  static double root(analytic::StickRadius stick) { return std::sqrt(stick.complement * (1.0 + stick.ratio)); }
 };
 
 }  // namespace example

@@ -59,10 +59,9 @@ static void test_states(const char* profile) {
     for (int wanted = 0; wanted < 7; ++wanted)
       check(near(one(profile, SLIPSTICK_TWIST, states[i].twist, wanted), members[wanted], 1e-9), "a member");
   }
-  check(
-      slipstick_exact(profile, SLIPSTICK_MOMENT_RATIO, 3, ratios, SLIPSTICK_TWIST, ratios) == SLIPSTICK_OK &&
-          ratios[2] == states[2].twist,
-      "results may replace the values");
+  check(slipstick_exact(profile, SLIPSTICK_MOMENT_RATIO, 3, ratios, SLIPSTICK_TWIST, ratios) == SLIPSTICK_OK &&
+            ratios[2] == states[2].twist,
+        "results may replace the values");
   double lost[3];
   check(slipstick_exact_energy_lost(profile, SLIPSTICK_TWIST, 3, ratios, 1e-3, lost) == SLIPSTICK_OK &&
             near(lost[2], one(profile, SLIPSTICK_TWIST, ratios[2], SLIPSTICK_ENERGY_LOST), 1e-3),
@@ -81,13 +80,10 @@ static void test_histories(const char* profile) {
   const double radii[2] = {0.5 * stick, 0.5 * (1 + stick)};
   double pressure[2], traction[2], reversed[2];
   check(slipstick_exact_pressure(profile, 2, radii, pressure) == SLIPSTICK_OK, "pressures");
-  check(slipstick_exact_traction(profile, SLIPSTICK_MOMENT_RATIO, m, 2, radii, traction) == SLIPSTICK_OK,
-        "tractions");
-  check(slipstick_exact_history_traction(profile, 2, moments, 2, radii, reversed) == SLIPSTICK_OK,
-        "reversed");
+  check(slipstick_exact_traction(profile, SLIPSTICK_MOMENT_RATIO, m, 2, radii, traction) == SLIPSTICK_OK, "tractions");
+  check(slipstick_exact_history_traction(profile, 2, moments, 2, radii, reversed) == SLIPSTICK_OK, "reversed");
   check(traction[0] < pressure[0] && traction[1] == pressure[1], "it sticks inside and slips outside");
-  check(near(reversed[0], -traction[0], 1e-12) && near(reversed[1], -traction[1], 1e-12),
-        "mirrored tractions");
+  check(near(reversed[0], -traction[0], 1e-12) && near(reversed[1], -traction[1], 1e-12), "mirrored tractions");
   slipstick_cycle_state states[3], curve[31];
   check(slipstick_exact_history(profile, 3, moments, states) == SLIPSTICK_OK, "a history");
   check(near(states[1].twist, -states[0].twist, 1e-12), "a full reversal mirrors the twist");
@@ -96,8 +92,7 @@ static void test_histories(const char* profile) {
              one(profile, SLIPSTICK_MOMENT_RATIO, m, SLIPSTICK_ENERGY_LOST), 1e-10),
         "a cycle loses the area of its loop");
   check(slipstick_exact_curve(profile, 3, moments, 10, curve) == SLIPSTICK_OK, "a curve");
-  check(curve[0].twist == 0 && curve[30].twist == states[2].twist,
-        "it runs from no load to the last turning point");
+  check(curve[0].twist == 0 && curve[30].twist == states[2].twist, "it runs from no load to the last turning point");
 }
 
 static void test_stresses(void) {
@@ -131,11 +126,10 @@ static void test_refusals(void) {
     int wanted;
     double* results;
     const char* words;
-  } refused[] = {
-      {"hertz", 0, &(double){NAN}, 0, results, "values[0]"}, {"hertz", 5, values, 0, results, "given = 5"},
-      {"hertz", 0, values, 8, results, "wanted = 8"},        {"sphere", 0, values, 0, results, "\"sphere\""},
-      {NULL, 0, values, 0, results, "profile = NULL"},       {"hertz", 0, NULL, 0, results, "values = NULL"},
-      {"hertz", 0, values, 0, NULL, "results = NULL"}};
+  } refused[] = {{"hertz", 0, &(double){NAN}, 0, results, "values[0]"}, {"hertz", 5, values, 0, results, "given = 5"},
+                 {"hertz", 0, values, 8, results, "wanted = 8"},        {"sphere", 0, values, 0, results, "\"sphere\""},
+                 {NULL, 0, values, 0, results, "profile = NULL"},       {"hertz", 0, NULL, 0, results, "values = NULL"},
+                 {"hertz", 0, values, 0, NULL, "results = NULL"}};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
     check(slipstick_exact(refused[i].profile, refused[i].given, 1, refused[i].values, refused[i].wanted,
                           refused[i].results) == SLIPSTICK_BAD_INPUT &&
@@ -143,8 +137,7 @@ static void test_refusals(void) {
           refused[i].words);
   check(slipstick_exact("hertz", 0, 0, NULL, 0, NULL) == SLIPSTICK_OK, "an empty array may be NULL");
   values[0] = 1.5;
-  check(slipstick_exact_pressure("hertz", 1, values, results) == SLIPSTICK_BAD_INPUT &&
-            says("radii[0]: r/a = 1.5"),
+  check(slipstick_exact_pressure("hertz", 1, values, results) == SLIPSTICK_BAD_INPUT && says("radii[0]: r/a = 1.5"),
         "a radius beyond the edge");
   check(slipstick_exact_curve("hertz", 0, NULL, 0, NULL) == SLIPSTICK_BAD_INPUT, "a curve into nothing");
 }
@@ -158,8 +151,7 @@ static const char* const kExactModel = "solver.model=exact";
 
 static slipstick_solution* solved(int status, double accuracy, size_t count, const char* const* overrides) {
   slipstick_solution* solution = NULL;
-  check(slipstick_solve(kScene, "made.toml", count, overrides, accuracy, NULL, NULL, &solution) == status,
-        "a solve");
+  check(slipstick_solve(kScene, "made.toml", count, overrides, accuracy, NULL, NULL, &solution) == status, "a solve");
   check((solution != NULL) == (status <= SLIPSTICK_NOT_CONVERGED), "there is a solution where it says so");
   return solution;
 }
@@ -181,8 +173,7 @@ static void test_solution(void) {
   slipstick_solution* solution = solved(SLIPSTICK_OK, 0, 0, NULL);
   size_t cells[2];
   double size[2];
-  check(slipstick_solution_grid(solution, cells, size) == SLIPSTICK_OK && cells[0] == 48 && cells[1] == 48,
-        "cells");
+  check(slipstick_solution_grid(solution, cells, size) == SLIPSTICK_OK && cells[0] == 48 && cells[1] == 48, "cells");
   const double* p = field(solution, "pressure", 48 * 48);
   double load = 0;
   for (size_t i = 0; i < 48 * 48; ++i) load += p[i] * size[0] * size[1];
@@ -197,8 +188,7 @@ static void test_solution(void) {
   check(slipstick_solution_write(solution, "c_interface_test.csv") == SLIPSTICK_OK, "fields become a file");
   FILE* written = fopen("c_interface_test.csv", "r");
   char line[256] = "";
-  check(written != NULL && fgets(line, sizeof line, written) != NULL &&
-            strncmp(line, "x1,x2,pressure,q1,q2", 20) == 0,
+  check(written != NULL && fgets(line, sizeof line, written) != NULL && strncmp(line, "x1,x2,pressure,q1,q2", 20) == 0,
         "with a header");
   if (written != NULL) fclose(written);
   remove("c_interface_test.csv");
@@ -219,8 +209,7 @@ static void test_refusals_of_a_solution(void) {
         "a number that is missing says why");
   const double* none = NULL;
   size_t nothing = 0;
-  check(slipstick_solution_field(exact, "q3", &none, &nothing) == SLIPSTICK_BAD_INPUT &&
-            says("allowed: x1, x2"),
+  check(slipstick_solution_field(exact, "q3", &none, &nothing) == SLIPSTICK_BAD_INPUT && says("allowed: x1, x2"),
         "a field that does not exist");
   check(slipstick_solution_write(exact, "fields.txt") == SLIPSTICK_BAD_INPUT, "a format that does not exist");
   slipstick_solution_free(exact);
@@ -235,8 +224,8 @@ static int stop_at_once(int iteration, double change, void* user) {
 static void test_ends(void) {
   int calls = 0;
   slipstick_solution* solution = NULL;
-  check(slipstick_solve(kScene, NULL, 0, NULL, 0, stop_at_once, &calls, &solution) == SLIPSTICK_STOPPED &&
-            calls == 1 && solution == NULL,
+  check(slipstick_solve(kScene, NULL, 0, NULL, 0, stop_at_once, &calls, &solution) == SLIPSTICK_STOPPED && calls == 1 &&
+            solution == NULL,
         "the caller may stop a solve");
   solution = solved(SLIPSTICK_NOT_CONVERGED, 0, 1, &(const char*){"solver.max_iterations=1"});
   check(strlen(slipstick_message()) > 0, "it says why it did not converge");
@@ -245,28 +234,24 @@ static void test_ends(void) {
                 SLIPSTICK_BAD_INPUT &&
             says("mine.toml:2") && solution == NULL,
         "a text's errors have its name and line");
-  check(slipstick_solve(kScene, NULL, 0, NULL, 0, NULL, NULL, NULL) == SLIPSTICK_BAD_INPUT,
-        "nowhere to put it");
+  check(slipstick_solve(kScene, NULL, 0, NULL, 0, NULL, NULL, NULL) == SLIPSTICK_BAD_INPUT, "nowhere to put it");
   solution = solved(SLIPSTICK_OK, 1e-3, 1, &(const char*){"solver.model=auto"});
   check(number(solution, "accuracy.reached") <= 1e-3, "an accuracy is reached");
-  check(strstr(slipstick_solution_text(solution), "target 0.001") != NULL,
-        "the text names the requested accuracy");
+  check(strstr(slipstick_solution_text(solution), "target 0.001") != NULL, "the text names the requested accuracy");
   slipstick_solution_free(solution);
   solved(SLIPSTICK_BAD_INPUT, 2.0, 0, NULL);
 }
 
 /* A program that writes 1,5 reads the same profiles, where this machine has a language that does. */
 static void test_locale(void) {
-  static const char* const kCommas[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "it_IT.UTF-8",
-                                        "nl_NL.UTF-8"};
+  static const char* const kCommas[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "it_IT.UTF-8", "nl_NL.UTF-8"};
   const double plain = one("power:1.5", SLIPSTICK_MOMENT_RATIO, 0.5, SLIPSTICK_TWIST);
   for (size_t i = 0; i < sizeof kCommas / sizeof *kCommas; ++i) {
     if (setlocale(LC_ALL, kCommas[i]) == NULL) continue;
     char text[8];
     snprintf(text, sizeof text, "%.1f", 1.5);
     check(strcmp(text, "1,5") == 0, "a locale with commas");
-    check(one("power:1.5", SLIPSTICK_MOMENT_RATIO, 0.5, SLIPSTICK_TWIST) == plain,
-          "numbers in a name are plain");
+    check(one("power:1.5", SLIPSTICK_MOMENT_RATIO, 0.5, SLIPSTICK_TWIST) == plain, "numbers in a name are plain");
     snprintf(text, sizeof text, "%.1f", 1.5);
     check(strcmp(text, "1,5") == 0, "the caller's locale is as it was");
     setlocale(LC_ALL, "C");

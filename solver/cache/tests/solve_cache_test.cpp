@@ -17,8 +17,7 @@ namespace {
 /// tractions, by other operators and methods, on the whole grid, of dissimilar bodies in turns, step by step.
 std::vector<Scene> scenes_that_share() {
   const Scene paper = paper_scene(24, 0.6);
-  std::vector<Scene> scenes{paper, paper_scene(24, 0.9), paper_scene(20, 0.6),
-                            ellipsoid_scene(24, 0.02, 0.01, 0.5)};
+  std::vector<Scene> scenes{paper, paper_scene(24, 0.9), paper_scene(20, 0.6), ellipsoid_scene(24, 0.02, 0.01, 0.5)};
   scenes.insert(scenes.end(), 9, paper);
   scenes[4].solver.cell_traction = CellTraction::smooth;
   scenes[5].solver.op = OperatorKind::direct;

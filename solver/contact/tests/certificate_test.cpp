@@ -62,8 +62,7 @@ TEST_F(CoulombState, ShowsWhichLawIsBrokenAndByHowMuch) {
   expect_certificate(0.0, 0.0, 0.0, 0.0);
   s_[kInner] = 0.2;  // slip in a sticking cell
   s_[16 + kInner] = 0.1;
-  expect_certificate((0.2 * q[kInner] + 0.1 * q[16 + kInner] + std::hypot(0.2, 0.1)) / energy(), 0.0, 0.0,
-                     0.0);
+  expect_certificate((0.2 * q[kInner] + 0.1 * q[16 + kInner] + std::hypot(0.2, 0.1)) / energy(), 0.0, 0.0, 0.0);
   std::swap(s_[kOuter], s_[16 + kOuter]);  // slip turned by a right angle
   s_[kOuter] *= -1.0;
   expect_certificate(0.3 / energy(), 0.0, 0.0, 0.0);
@@ -139,9 +138,7 @@ class SmallProblem : public testing::Test {
   ArrayXd product(const ArrayXd& q) const { return (K_ * q.matrix()).array(); }
   double energy(const ArrayXd& q) const { return 0.5 * (q * product(q)).sum(); }
 
-  ArrayXd project(const ArrayXd& q) const {
-    return q * (bound_ / norms(q).max(1e-300)).min(1.0).replicate(2, 1);
-  }
+  ArrayXd project(const ArrayXd& q) const { return q * (bound_ / norms(q).max(1e-300)).min(1.0).replicate(2, 1); }
 
   ArrayXd random_feasible(std::mt19937_64& generator) const {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -175,8 +172,7 @@ TEST_F(SmallProblem, HasPartialSlipAndItsMinimumHasNoGap) {
   EXPECT_LE(c.friction_bound, kFewRoundings);
 }
 
-/// energy(q) - energy(q*) among tractions of one moment, bounded from both sides whatever the twist that is
-/// put in.
+/// energy(q) - energy(q*) among tractions of one moment, bounded from both sides whatever the twist that is put in.
 TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
   std::mt19937_64 generator(20);
   const double least = energy(q_star_);
@@ -269,8 +265,7 @@ TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
   }
   Certificate nothing_asked = holds;
   nothing_asked.gap = kNaN;
-  EXPECT_NE(violated_bounds(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "")
-      << "NaN never holds";
+  EXPECT_NE(violated_bounds(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "") << "NaN never holds";
 }
 
 }  // namespace

@@ -45,8 +45,7 @@ struct CoulombBench {
 };
 
 /// K q and the slip afresh, by direct summation.
-Certificate independent_certificate(const CoulombBench& bench, const TangentialSolution& solution,
-                                    double moment) {
+Certificate independent_certificate(const CoulombBench& bench, const TangentialSolution& solution, double moment) {
   const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), *bench.elasticity.law);
   ArrayXd u(solution.traction.size());
   op->apply(solution.traction, u);
@@ -124,8 +123,7 @@ TEST(Coulomb, HoldsInEachCell) {
 /// Under the ellipse's torsion, also where the pressure has moved the surfaces towards the centre.
 class AgainstPlainGradient : public testing::TestWithParam<std::tuple<double, double>> {};
 INSTANTIATE_TEST_SUITE_P(MomentRatios, AgainstPlainGradient,
-                         testing::Combine(testing::Values(0.1, 0.5, -0.5, 0.9, 0.99),
-                                          testing::Values(0.0, 0.01)));
+                         testing::Combine(testing::Values(0.1, 0.5, -0.5, 0.9, 0.99), testing::Values(0.0, 0.01)));
 
 TEST_P(AgainstPlainGradient, TheMinimumIsTheSame) {
   const auto [moment_ratio, inward] = GetParam();
@@ -136,8 +134,7 @@ TEST_P(AgainstPlainGradient, TheMinimumIsTheSame) {
   problem.initial_displacement << -inward * cell_x1(bench.grid), -inward * cell_x2(bench.grid);
   const TangentialSolution slow = example::solve_by_plain_gradient(*op, problem, 1e-10, 20000);
   ASSERT_EQ(slow.status, Status::converged) << slow.message;
-  const TangentialSolution fast =
-      solve_by_coulomb_method(bench.elasticity, bench.grid, problem, {.tolerance = 1e-12});
+  const TangentialSolution fast = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, {.tolerance = 1e-12});
   // |q - q*|_K^2 <= 2 gap: in the energy's norm 1e-5, in the largest traction somewhat more.
   EXPECT_LE(relative_difference(slow.traction, fast.traction), 1e-4);
   EXPECT_NEAR(slow.twist / fast.twist, 1.0, 1e-6);
@@ -165,8 +162,7 @@ TEST(CoulombWork, ThatDoesNotSufficeIsSaidWithTheGapThatIsLeft) {
   options.max_applications = 2;
   const TangentialSolution cut = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
   EXPECT_EQ(cut.status, Status::not_converged);
-  EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, tolerance 1e-12", cut.change)),
-            std::string::npos)
+  EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, tolerance 1e-12", cut.change)), std::string::npos)
       << cut.message;
   EXPECT_EQ(bench.solve(0.5).message, "");
 }

@@ -32,8 +32,7 @@ ModelSolution solved(const Scene& scene) {
 
 // --- kernels ---
 
-/// Betti: the work of shear in the displacements by pressure equals the work of pressure in the displacements
-/// by shear.
+/// Betti: the work of shear in the displacements by pressure equals the work of pressure in the displacements by shear.
 TEST(ShearKernel, IsReciprocalToThePressures) {
   const SharedLaw law = half_spaces({1.0, 0.2}, {3.0, 0.35});
   for (const Grid& grid : {Grid{9, 6, 1.0, 0.7}, Grid{16, 16, 1.0, 1.0}, Grid{1, 5, 1.0, 1.0}}) {
@@ -45,8 +44,8 @@ TEST(ShearKernel, IsReciprocalToThePressures) {
       const ArrayXd normal = opening(q);
       const double scale = std::sqrt(q.square().sum() * along.square().sum());
       EXPECT_NEAR((q * along).sum(), (p * normal).sum(), 1e-13 * scale);
-      EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), *law), q) + normal).abs().maxCoeff(),
-                  0.0, 1e-13 * largest(normal));
+      EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), *law), q) + normal).abs().maxCoeff(), 0.0,
+                  1e-13 * largest(normal));
     }
   }
 }
@@ -70,8 +69,7 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     const ArrayXd& p = solution.normal.pressure;
     const ArrayXd& q = solution.tangential.traction;
 
-    const ArrayXd opening =
-        applied(normal_kernel(), model, p) - applied(shear_kernel(), model, q) + model.gap;
+    const ArrayXd opening = applied(normal_kernel(), model, p) - applied(shear_kernel(), model, q) + model.gap;
     const double lowest = opening.minCoeff();
     const double energy = 0.5 * (p * applied(normal_kernel(), model, p)).sum();
     EXPECT_GE(p.minCoeff(), 0.0);
@@ -88,8 +86,8 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     slip *= (p > 0.0).cast<double>().replicate(2, 1);
     const double area = model.grid.cell_area();
     const Certificate fresh =
-        certify({q, applied(tangential_kernel(), model, q), slip}, model.friction.bound(p),
-                rotation_field(model.grid), 0.4 * solution.moment_limit / (area * model.moment_unit()),
+        certify({q, applied(tangential_kernel(), model, q), slip}, model.friction.bound(p), rotation_field(model.grid),
+                0.4 * solution.moment_limit / (area * model.moment_unit()),
                 {30.0 / (area * model.force_unit()), 10.0 / (area * model.force_unit())});
     EXPECT_LE(fresh.gap, tolerance + 1e-13);
     EXPECT_LE(fresh.friction_bound, kRounding);
@@ -173,8 +171,7 @@ TEST(SpenceScenes, CostFewApplications) {
     sphere.steps[i].normal = *sphere.steps[3].normal * std::pow(1.5, static_cast<double>(i) - 3.0);
   }
   double applications = 0.0;
-  solve_in_model_units(sphere,
-                       [&](const ModelSolution& step) { applications += step.operator_applications; });
+  solve_in_model_units(sphere, [&](const ModelSolution& step) { applications += step.operator_applications; });
   EXPECT_LE(applications, 200.0);
 }
 

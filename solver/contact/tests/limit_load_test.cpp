@@ -141,8 +141,7 @@ TEST(LimitLoad, IsTheFrictionInItsSlidingAndBalancedByTractions) {
       const ArrayXd x1 = cell_x1(contact.grid), x2 = cell_x2(contact.grid);
       for (const ImposedLoads& loads :
            {ImposedLoads{0.0, 0.0, 1.0}, ImposedLoads{0.3, -0.2, 1.0}, ImposedLoads{1.0, std::nullopt, 0.1},
-            ImposedLoads{1.0, 1.0, 0.0}, ImposedLoads{std::nullopt, 0.0, 1.0},
-            ImposedLoads{0.3, -0.4, std::nullopt}}) {
+            ImposedLoads{1.0, 1.0, 0.0}, ImposedLoads{std::nullopt, 0.0, 1.0}, ImposedLoads{0.3, -0.4, std::nullopt}}) {
         SCOPED_TRACE(testing::Message() << seed << ' ' << strongest);
         const LimitLoad limit = contact.limit(loads);
         EXPECT_LE(limit.carried, limit.factor);
@@ -151,8 +150,7 @@ TEST(LimitLoad, IsTheFrictionInItsSlidingAndBalancedByTractions) {
         const ArrayXd v1 = delta1 - twist * x2, v2 = delta2 + twist * x1;
         const ArrayXd speed = (v1.square() + v2.square()).sqrt();
         expect_relative(limit.factor, (contact.bound * speed).sum());
-        const ArrayXd q =
-            (speed > 1e-3 * speed.maxCoeff()).select(contact.bound / speed, ArrayXd::Zero(speed.size()));
+        const ArrayXd q = (speed > 1e-3 * speed.maxCoeff()).select(contact.bound / speed, ArrayXd::Zero(speed.size()));
         const ArrayXd open = (q == 0.0).select(contact.bound, 0.0);
         const ArrayXd arm = (x1.square() + x2.square()).sqrt();
         const std::array motion{delta1, delta2, twist};

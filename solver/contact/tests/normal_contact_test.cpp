@@ -49,9 +49,9 @@ TEST_F(ScratchFolder, AHeightMapOfASphereGivesTheSpheresPressure) {
     return 7e-5 + (std::pow(grid.x1(i), 2) + std::pow(grid.x2(j), 2)) / (2.0 * paper::kRadius);
   };
   Scene scene = sphere;
-  scene.surfaces.front() = {.shape = Shape::height_map,
-                            .map = {.file = write("heights.csv", table_of(grid.n1, grid.n2, height)),
-                                    .spacing = {grid.h1, grid.h2}}};
+  scene.surfaces.front() = {
+      .shape = Shape::height_map,
+      .map = {.file = write("heights.csv", table_of(grid.n1, grid.n2, height)), .spacing = {grid.h1, grid.h2}}};
   const Contact contact = press(scene);
   // The heights have lost 7e-5/1e-5 eps, and the two solves stop at their own iterates within a gap of 1e-10.
   EXPECT_LT((contact.solution.pressure - expected.solution.pressure).abs().maxCoeff(),
@@ -84,8 +84,7 @@ TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
   const double gap = (p * (opening - opening.minCoeff())).sum() / energy;
   EXPECT_LE(gap, GetParam() * (1.0 + 1e-6) + 1e-15);
   EXPECT_NEAR(solution.complementarity, gap, 1e-15);
-  // No overlap deeper than the gap that was reported allows for: p.(opening - lowest) >= total (mean -
-  // lowest).
+  // No overlap deeper than the gap that was reported allows for: p.(opening - lowest) >= total (mean - lowest).
   EXPECT_GE(opening.minCoeff() * total, -solution.complementarity * energy * 2.0 - 1e-12);
   EXPECT_GT((p > 0.0).count(), 500);
   EXPECT_LT((p > 0.0).count(), p.size());
@@ -123,21 +122,19 @@ TEST(NormalContact, RefusesWhatIsNoProblemAndSaysThatItsWorkWasTooLittle) {
   const ArrayXd bowl = 0.05 * (cell_x1(grid).square() + cell_x2(grid).square());
   ArrayXd hole = bowl;
   hole[13] = kNaN;
-  for (const auto& [gap, load] :
-       std::vector<std::pair<ArrayXd, double>>{{bowl, -1.0},
-                                               {bowl, 0.0},
-                                               {bowl, kNaN},
-                                               {bowl, kInfinity},
-                                               {hole, 1.0},
-                                               {ArrayXd::Constant(64, kInfinity), 1.0},
-                                               {ArrayXd::Zero(63), 1.0}}) {
+  for (const auto& [gap, load] : std::vector<std::pair<ArrayXd, double>>{{bowl, -1.0},
+                                                                         {bowl, 0.0},
+                                                                         {bowl, kNaN},
+                                                                         {bowl, kInfinity},
+                                                                         {hole, 1.0},
+                                                                         {ArrayXd::Constant(64, kInfinity), 1.0},
+                                                                         {ArrayXd::Zero(63), 1.0}}) {
     EXPECT_THROW(solve_normal_contact(elasticity, grid, {gap, load}), std::invalid_argument) << load;
   }
   const NormalSolution stopped =
       solve_normal_contact(elasticity, grid, {bowl, 10.0}, {.tolerance = 1e-12, .max_applications = 2});
   EXPECT_EQ(stopped.status, Status::not_converged);
-  EXPECT_THAT(stopped.message,
-              testing::AllOf(HasSubstr("within 2 operator applications"), HasSubstr("1e-12")));
+  EXPECT_THAT(stopped.message, testing::AllOf(HasSubstr("within 2 operator applications"), HasSubstr("1e-12")));
   EXPECT_GT(stopped.complementarity, 1e-12);
 }
 
@@ -155,8 +152,7 @@ TEST(OneCell, CarriesTheLoad) {
 TEST(OneCell, OfManyTouches) {
   const Grid grid{9, 9, 1.0, 1.0};
   ArrayXd gap = cell_x1(grid).square() + cell_x2(grid).square();
-  const NormalSolution solution =
-      solve_normal_contact({half_spaces({1.0, 0.3}, {1.0, 0.3})}, grid, {gap, 0.01});
+  const NormalSolution solution = solve_normal_contact({half_spaces({1.0, 0.3}, {1.0, 0.3})}, grid, {gap, 0.01});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ((solution.pressure > 0.0).count(), 1);
   EXPECT_NEAR(solution.pressure[40], 0.01, 1e-14);

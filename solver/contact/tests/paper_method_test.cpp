@@ -75,8 +75,7 @@ TEST_P(Sphere, AnswersItsTwistWithItsMoment) {
   // Slip directions freeze at other iterates, so the two answers differ by the method's error: a gap of 1e-5
   // of the energy is sqrt(1e-5) in tractions.
   EXPECT_NEAR(bench.moment_of(by_twist.traction) / bench.moment_of(by_moment.traction), 1.0, 1e-5);
-  EXPECT_LE((by_twist.traction - by_moment.traction).matrix().norm(),
-            3e-3 * by_moment.traction.matrix().norm());
+  EXPECT_LE((by_twist.traction - by_moment.traction).matrix().norm(), 3e-3 * by_moment.traction.matrix().norm());
 }
 
 // A flat punch, p = 1/sqrt(1 - r^2), sticks everywhere up to M = 2/3 mu W a, which is 0.849 of its limit,
@@ -92,8 +91,7 @@ TEST(Restick, BringsBackTheCellsThatTheInitialGuessMadeSlip) {
       (bound > 0.0).select(r, 0.0) * (kMomentRatio * limit / (bound > 0.0).select(r.square(), 0.0).sum());
   ASSERT_GT((guess > bound).count(), 100);
 
-  const auto op =
-      make_operator(OperatorKind::dcfft, grid, tangential_kernel(), *half_spaces({1.0, 0.3}, {1.0, 0.3}));
+  const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), *half_spaces({1.0, 0.3}, {1.0, 0.3}));
   const TangentialSolution solution = solve_by_paper_method(*op, under_moment(bound, kMomentRatio * limit));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const ArrayXd inside = (r < 0.8).cast<double>();  // the staircase of the edge is felt beyond
@@ -104,17 +102,16 @@ TEST(Restick, BringsBackTheCellsThatTheInitialGuessMadeSlip) {
 
 // --- the method's known flaw ---
 
-/// A slipping cell keeps the direction that its traction had when it began to slip (Eqs. (22), (23)). On a
-/// circle that is the right one, by symmetry, but for the mesh. On an ellipse the slip turns while the front
-/// moves on, so the traction does not oppose it any more. The test of Eq. (26) cannot see that; the
-/// certificate can.
+/// A slipping cell keeps the direction that its traction had when it began to slip (Eqs. (22), (23)). On a circle that
+/// is the right one, by symmetry, but for the mesh. On an ellipse the slip turns while the front moves on, so the
+/// traction does not oppose it any more. The test of Eq. (26) cannot see that; the certificate can.
 TEST(FrozenSlipDirection, ShowsOnAnEllipseInTheCertificateAlone) {
   const double elongation = 1.7;  // radii of curvature 2.9 to 1: semi-axes 1 to 0.495
   const ModelSolution sphere = by_paper_method(paper_scene(64, 0.9));
   double coarse_direction = 0.0;
   for (const Index cells : {64, 128}) {
-    const ModelSolution ellipse = by_paper_method(
-        ellipsoid_scene(cells, paper::kRadius * elongation, paper::kRadius / elongation, 0.9));
+    const ModelSolution ellipse =
+        by_paper_method(ellipsoid_scene(cells, paper::kRadius * elongation, paper::kRadius / elongation, 0.9));
     ASSERT_EQ(ellipse.status, Status::converged);
     EXPECT_LE(ellipse.tangential.change, 1e-8);
     EXPECT_NEAR(ellipse.model.hertz->semi_axis_2 / ellipse.model.hertz->semi_axis_1, 0.5, 0.01);
@@ -144,8 +141,7 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   EXPECT_LE(solution.certificate.moment, kRounding);
   EXPECT_LE(solution.certificate.friction_bound, kRounding);
   EXPECT_LE(solution.certificate.force, 1e-8);
-  // The pressure pulls the surfaces of unlike bodies radially: tractions have a radial part, that of like
-  // ones do not.
+  // The pressure pulls the surfaces of unlike bodies radially: tractions have a radial part, that of like ones do not.
   const auto radial_part = [](const ModelSolution& of) {
     const Grid& grid = of.model.grid;
     ArrayXd position(2 * grid.cells());
@@ -254,8 +250,7 @@ TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
   const Bench bench(24);
   for (const double factor : {kNaN, kInfinity}) {
     Multiple broken(bench.model.grid, factor);
-    const TangentialSolution solution =
-        solve_by_paper_method(broken, under_moment(bench.bound, 0.5 * bench.limit));
+    const TangentialSolution solution = solve_by_paper_method(broken, under_moment(bench.bound, 0.5 * bench.limit));
     EXPECT_EQ(solution.status, Status::not_converged);
     EXPECT_THAT(solution.message, StartsWith("non-finite slip in iteration 1: S = "));
     EXPECT_FALSE(bench.certify_solution(solution, 0.5 * bench.limit).gap <= 1e300);
@@ -265,8 +260,7 @@ TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
 TEST(Breakdown, OfAnOperatorThatIsNotPositiveDefiniteIsNamed) {
   const Bench bench(24);
   Multiple indefinite(bench.model.grid, -1.0);
-  const TangentialSolution solution =
-      solve_by_paper_method(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
+  const TangentialSolution solution = solve_by_paper_method(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_THAT(solution.message, StartsWith("indefinite operator in iteration "));
   EXPECT_THAT(solution.message, HasSubstr("d.Kd = -"));
@@ -359,8 +353,8 @@ TEST_F(SceneFile, ALopsidedPressureIsTakenUpToTheTolerance) {
     std::string table = "x1,x2,pressure\n";
     for (Index cell = 0; cell < grid.cells(); ++cell)
       table += fmt::format("{},{},{:.17g}\n", grid.x1(cell / 16), grid.x2(cell % 16), p[cell]);
-    Scene scene = pressed(table, {"grid.cells=[16, 16]", "grid.extent=[0.0016, 0.0016]",
-                                  "load.moment_ratio=0.7", "solver.method=paper"});
+    Scene scene = pressed(
+        table, {"grid.cells=[16, 16]", "grid.extent=[0.0016, 0.0016]", "load.moment_ratio=0.7", "solver.method=paper"});
     scene.solver.tolerance = tolerance;
     return solve_in_model_units(scene);
   };

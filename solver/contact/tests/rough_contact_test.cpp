@@ -34,9 +34,7 @@ struct RoughFace {
   NormalSolution pressed(double pressure) const {
     return solve_normal_contact(elasticity, grid, {gap, load(pressure)});
   }
-  double load(double pressure) const {
-    return pressure * kModulus * kSlope * static_cast<double>(grid.cells());
-  }
+  double load(double pressure) const { return pressure * kModulus * kSlope * static_cast<double>(grid.cells()); }
 
   Elasticity elasticity{.law = half_spaces({0.7 * kModulus, 0.3}, {0.7 * kModulus, 0.3}), .at_edge = true};
   Grid grid;
@@ -75,9 +73,8 @@ TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
   EXPECT_EQ(last, 1.0);
 }
 
-/// Tractions on a body of many spots, at parts of the force that they carry: to next to none, where nothing
-/// slips and the problem is linear, and to nearly all. Where residuals end at the edges of spots the first
-/// takes 50.
+/// Tractions on a body of many spots, at parts of the force that they carry: to next to none, where nothing slips and
+/// the problem is linear, and to nearly all. Where residuals end at the edges of spots the first takes 50.
 TEST(RoughContact, TakesFewApplicationsUnderATangentialForce) {
   const RoughFace face(128);
   const ArrayXd bound = 0.3 * face.pressed(0.1).pressure;

@@ -44,8 +44,7 @@ struct Fields {
 Fields sample(const MadeUp& made_up, Index n, Index n2 = 0) {
   if (n2 == 0) n2 = n;
   const Grid grid{n, n2, 2.0 / static_cast<double>(n), 2.0 / static_cast<double>(n2)};
-  Fields fields{grid, ArrayXd::Zero(grid.cells()), ArrayXd::Zero(2 * grid.cells()),
-                ArrayXd::Zero(grid.cells())};
+  Fields fields{grid, ArrayXd::Zero(grid.cells()), ArrayXd::Zero(2 * grid.cells()), ArrayXd::Zero(grid.cells())};
   const ArrayXd x1 = cell_x1(grid);
   const ArrayXd x2 = cell_x2(grid);
   for (Index i = 0; i < grid.cells(); ++i) {
@@ -91,19 +90,17 @@ struct MadeUpShape {
   double at_256;
 };
 inline void PrintTo(const MadeUpShape& shape, std::ostream* stream) { *stream << shape.name; }
-const MadeUpShape kShapes[] = {
-    {"Circle", {}, 3e-5, 5e-6},
-    {"OffCentre", {.x0 = 0.13, .y0 = -0.11}, 3e-5, 5e-6},
-    {"Ellipse", {.a = 0.6, .b = 0.4}, 6e-5, 2e-5},
-    {"TurnedEllipse", {.a = 0.6, .b = 0.4, .turned = 0.5, .x0 = 0.02}, 6e-5, 2e-5},
-    {"SlenderEllipse", {.a = 0.7, .b = 0.25, .turned = 1.0, .ring = 1.35}, 3e-4, 7e-5}};
+const MadeUpShape kShapes[] = {{"Circle", {}, 3e-5, 5e-6},
+                               {"OffCentre", {.x0 = 0.13, .y0 = -0.11}, 3e-5, 5e-6},
+                               {"Ellipse", {.a = 0.6, .b = 0.4}, 6e-5, 2e-5},
+                               {"TurnedEllipse", {.a = 0.6, .b = 0.4, .turned = 0.5, .x0 = 0.02}, 6e-5, 2e-5},
+                               {"SlenderEllipse", {.a = 0.7, .b = 0.25, .turned = 1.0, .ring = 1.35}, 3e-4, 7e-5}};
 
 class MadeUpFront : public testing::TestWithParam<MadeUpShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, MadeUpFront, testing::ValuesIn(kShapes),
                          [](const auto& shape) { return std::string(shape.param.name); });
 
-/// The order is 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is
-/// left.
+/// The order is 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is left.
 TEST_P(MadeUpFront, IsFoundAtAHighOrder) {
   const MadeUpShape& shape = GetParam();
   const Errors coarse = worst(shape.made_up, 64);
@@ -158,8 +155,7 @@ Fields mirror_images(Fields fields) {
   const Index n = fields.grid.n1;
   for (Index i = 0; i < n * n; ++i) {
     const Index image = std::min(i / n, n - 1 - i / n) * n + std::min(i % n, n - 1 - i % n);
-    for (const Index component : {Index{0}, n * n})
-      fields.slip[i + component] = fields.slip[image + component];
+    for (const Index component : {Index{0}, n * n}) fields.slip[i + component] = fields.slip[image + component];
   }
   return fields;
 }
@@ -202,8 +198,7 @@ void expect_counted(const Fields& fields, const char* why) {
   EXPECT_THAT(front.why_counted, HasSubstr(why));
   EXPECT_EQ(front.fitted, 0.0);
   EXPECT_EQ(front.radius, front.counted_radius);
-  EXPECT_DOUBLE_EQ(front.counted_radius,
-                   std::sqrt(fields.stick.sum() * fields.grid.cell_area() / std::numbers::pi));
+  EXPECT_DOUBLE_EQ(front.counted_radius, std::sqrt(fields.stick.sum() * fields.grid.cell_area() / std::numbers::pi));
 }
 
 TEST(StickFront, IsCountedWhereItCannotBeFitted) {

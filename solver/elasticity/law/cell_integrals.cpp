@@ -23,13 +23,11 @@ const GaussRule& gauss_rule(double offset) {
   };
   static const std::vector<Choice> choices = [] {
     std::vector<Choice> made;
-    for (int n = 2; n < kMaxPoints; ++n)
-      made.push_back({0.25 * (std::pow(10.0, 8.0 / n) + 2.0), make_gauss_rule(n)});
+    for (int n = 2; n < kMaxPoints; ++n) made.push_back({0.25 * (std::pow(10.0, 8.0 / n) + 2.0), make_gauss_rule(n)});
     made.push_back({0.0, make_gauss_rule(kMaxPoints)});
     return made;
   }();
-  return std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return offset >= c.reach; })
-      ->rule;
+  return std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return offset >= c.reach; })->rule;
 }
 
 /// F(++) - F(-+) - F(+-) + F(--) over the cell's corners.
@@ -62,8 +60,8 @@ CellIntegrals closed_form(double x, double y, double h1, double h2) {
 }
 
 /// Adds the integrals over kLanes cells at (x, y), in the `wanted` lanes only.
-void add_quadrature(CellRow& row, Index block, double x, const Lanes& y, const Lanes& wanted, double h1,
-                    double h2, const GaussRule& rule) {
+void add_quadrature(CellRow& row, Index block, double x, const Lanes& y, const Lanes& wanted, double h1, double h2,
+                    const GaussRule& rule) {
   Lanes xx = Lanes::Zero();
   Lanes yy = xx, xy = xx, x_sum = xx, y_sum = xx;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
@@ -91,8 +89,8 @@ void add_quadrature(CellRow& row, Index block, double x, const Lanes& y, const L
 /// Adds the integrals over the blocks of cells from the first one on; cell k is at (x, y + k step).
 void add_cells(CellRow& row, Index first_block, double x, double y, double step, double h1, double h2) {
   for (Index block = first_block; block < row.xx.cols(); ++block) {
-    const Lanes ys = y + step * Lanes::LinSpaced(static_cast<double>(block * kLanes),
-                                                 static_cast<double>((block + 1) * kLanes - 1));
+    const Lanes ys =
+        y + step * Lanes::LinSpaced(static_cast<double>(block * kLanes), static_cast<double>((block + 1) * kLanes - 1));
     const Lanes offset = (ys.abs() / h2).max(std::abs(x) / h1);
     const Lanes far = (offset >= kClosedFormOffset).cast<double>();
     for (Index lane = 0; lane < kLanes; ++lane) {
@@ -101,8 +99,7 @@ void add_cells(CellRow& row, Index first_block, double x, double y, double step,
     if ((far == 0.0).all()) continue;
     // Near lanes, where quadrature would be poor or divide by zero, are moved off and not added.
     const Lanes moved = (far != 0.0).select(ys, kClosedFormOffset * h2);
-    add_quadrature(row, block, x, moved, far, h1, h2,
-                   gauss_rule(std::max(offset.minCoeff(), kClosedFormOffset)));
+    add_quadrature(row, block, x, moved, far, h1, h2, gauss_rule(std::max(offset.minCoeff(), kClosedFormOffset)));
   }
 }
 
@@ -110,8 +107,7 @@ void add_cells(CellRow& row, Index first_block, double x, double y, double step,
 
 GaussRule make_gauss_rule(int points) {
   const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
-      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
-      gsl_integration_glfixed_table_free);
+      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)), gsl_integration_glfixed_table_free);
   GaussRule rule;
   for (int i = 0; i < points; ++i) {
     double node = 0.0;
@@ -132,8 +128,8 @@ void integrate_row(CellRow& row, Index first_block, double x, double y, double h
   for (CellRow::Values* const values : {&row.xx, &row.yy, &row.xy, &row.x, &row.y}) values->setZero();
   for (int i = 0; i < parts1; ++i) {
     for (int j = 0; j < parts2; ++j) {
-      add_cells(row, first_block, x + (i - 0.5 * (parts1 - 1)) * part_h1,
-                y + (j - 0.5 * (parts2 - 1)) * part_h2, h2, part_h1, part_h2);
+      add_cells(row, first_block, x + (i - 0.5 * (parts1 - 1)) * part_h1, y + (j - 0.5 * (parts2 - 1)) * part_h2, h2,
+                part_h1, part_h2);
     }
   }
   // Odd: exactly zero on the axes. A row can start on the other one only.

@@ -24,10 +24,9 @@ struct CellIntegrals {
   double y;
 };
 
-/// Relative error below 1e-13 for offsets up to 8,192 cells; of xx and yy relative to their sum, since far
-/// off on an axis one is less than the other by the square of the distance in cells, and every component
-/// contains both. By the closed form nearby, and further off, where that cancels, by Gauss-Legendre
-/// quadrature, whose terms have one sign.
+/// Relative error below 1e-13 for offsets up to 8,192 cells; of xx and yy relative to their sum, since far off on an
+/// axis one is less than the other by the square of the distance in cells, and every component contains both. By the
+/// closed form nearby, and further off, where that cancels, by Gauss-Legendre quadrature, whose terms have one sign.
 CellIntegrals cell_integrals(double x, double y, double h1, double h2);
 
 /// Neighbouring cells that are integrated together, to fill vector registers.

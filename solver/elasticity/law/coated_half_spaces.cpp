@@ -35,15 +35,13 @@ const GaussRule& rule_for(double offset) {
   }();
   const double gained = (4.0 * offset - 2.0) * (4.0 * offset - 2.0);
   std::size_t points = 1;
-  for (double left = 1.0 / (offset * gained); left > kRuleError && points < kMaxPoints; left /= gained)
-    ++points;
+  for (double left = 1.0 / (offset * gained); left > kRuleError && points < kMaxPoints; left /= gained) ++points;
   return rules[points - 1];
 }
 
 using CellSums = std::array<double, 6>;  // of K11, K12, K22, K13, K23, K33, the order of Component
 
-/// Adds what the bases add to the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner
-/// layer.
+/// Adds what the bases add to the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner layer.
 void add_cell(CellSums& sums, const HankelTable& table, double x, double y, double h1, double h2) {
   const double reach = std::sqrt(x * x + y * y + 4.0);
   if (std::max(h1, h2) * kMinOffset > reach) {
@@ -73,8 +71,8 @@ void add_cell(CellSums& sums, const HankelTable& table, double x, double y, doub
 
 /// Adds what the bases add to tables. A cell of a square grid whose mirror about the diagonal is in the grid
 /// writes that too.
-void add_bases(std::vector<std::vector<double>>& tables, std::span<const Component> components,
-               const Grid& offsets, double thickness, const HankelTable& table, int threads) {
+void add_bases(std::vector<std::vector<double>>& tables, std::span<const Component> components, const Grid& offsets,
+               double thickness, const HankelTable& table, int threads) {
   const double h1 = offsets.h1 / thickness;
   const double h2 = offsets.h2 / thickness;
   const auto write = [&](Index k1, Index k2, const CellSums& sums) {
@@ -109,8 +107,7 @@ constexpr double kAlike = 1e-12;
 
 }  // namespace
 
-CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper,
-                                   CellTraction cell_traction)
+CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper, CellTraction cell_traction)
     : lower_(lower),
       upper_(upper),
       layers_(elastic_pair(lower.surface, upper.surface)),
@@ -156,8 +153,8 @@ std::vector<std::vector<double>> CoatedHalfSpaces::influence_tables(std::span<co
   return tables;
 }
 
-void CoatedHalfSpaces::inverse_symbols(bool tangential, double h1, double h2,
-                                       std::span<const PlaneWave> waves, std::span<Symbol> inverses) const {
+void CoatedHalfSpaces::inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
+                                       std::span<Symbol> inverses) const {
   for (std::size_t i = 0; i < waves.size(); ++i) {
     const auto [xi1, xi2, length] = waves[i];
     const double modulus = length / sharpening(cell_traction_, xi1 * h1, xi2 * h2);

@@ -79,8 +79,8 @@ ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
       .poisson_compliance = lower.poisson_ratio * lower_compliance + upper.poisson_ratio * upper_compliance,
       .normal_compliance =
           (1.0 - lower.poisson_ratio) * lower_compliance + (1.0 - upper.poisson_ratio) * upper_compliance,
-      .mismatch = (1.0 - 2.0 * lower.poisson_ratio) * lower_compliance -
-                  (1.0 - 2.0 * upper.poisson_ratio) * upper_compliance,
+      .mismatch =
+          (1.0 - 2.0 * lower.poisson_ratio) * lower_compliance - (1.0 - 2.0 * upper.poisson_ratio) * upper_compliance,
   };
 }
 
@@ -112,15 +112,14 @@ std::vector<std::vector<double>> HalfSpaces::tables_of_constant(std::span<const 
     const Index end = std::min(begin + static_cast<Index>(rows.size()), m1);
     const Index first = end <= mirrored ? begin : 0;
     for (Index k1 = begin; k1 < end; ++k1) {
-      integrate_row(rows[static_cast<std::size_t>(k1 - begin)], first / kLanes, static_cast<double>(k1) * h1,
-                    0.0, h1, h2);
+      integrate_row(rows[static_cast<std::size_t>(k1 - begin)], first / kLanes, static_cast<double>(k1) * h1, 0.0, h1,
+                    h2);
     }
     for (std::size_t c = 0; c < components.size(); ++c) {
       with_formula(components[c], pair_, [&](const auto& formula) {
         for (Index k1 = begin; k1 < end; ++k1) {
           const CellRow& row = rows[static_cast<std::size_t>(k1 - begin)];
-          for (Index k2 = first; k2 < m2; ++k2)
-            tables[c][static_cast<std::size_t>(k1 * m2 + k2)] = formula(row[k2]);
+          for (Index k2 = first; k2 < m2; ++k2) tables[c][static_cast<std::size_t>(k1 * m2 + k2)] = formula(row[k2]);
         }
         for (Index k2 = end; k2 < mirrored; ++k2) {
           double* const to = tables[c].data() + k2 * m2;

@@ -34,14 +34,13 @@ class HalfSpaces final : public ElasticLaw {
   explicit HalfSpaces(const ElasticPair& pair, CellTraction cell_traction = CellTraction::constant)
       : pair_(pair), cell_traction_(cell_traction) {}
 
-  /// One pass over the offsets serves all components, and square cells need only offsets on one side of the
-  /// diagonal.
+  /// One pass over the offsets serves all components, and square cells need only offsets on one side of the diagonal.
   ///
   /// With CellTraction::smooth, 1/24 of its second differences along both axes is subtracted from each
   /// coefficient: constant tractions reduce a wave of wave vector xi by the factor
   /// 1 - (xi_1^2 h1^2 + xi_2^2 h2^2)/24, which this corrects for any contact shape.
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
-                                                    const Grid& offsets, int threads = 1) const override;
+  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
+                                                    int threads = 1) const override;
 
   /// Tractions of wave vector xi, n = xi/|xi|, move the surface by (S I - N n n^T)/|xi| times them along it
   /// and by C33/|xi| times them across (transforms of the solutions of Cerruti and Boussinesq: 1/r becomes
@@ -51,19 +50,18 @@ class HalfSpaces final : public ElasticLaw {
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                        std::span<Symbol> inverses) const override;
 
-  /// The eigenvalues lie within the range of the kernel's symbol on the whole plane of cells. Its least value
-  /// belongs to the roughest fields: for square cells without cross contraction 0.2903 h/G where q changes
-  /// sign from cell to cell along both axes, 0.3712 times the shorter side over G where cells are oblong.
-  /// Cross contraction lowers it by 1 - nu at most, or raises it. Smooth cell tractions raise it, most for
-  /// the roughest fields.
+  /// The eigenvalues lie within the range of the kernel's symbol on the whole plane of cells. Its least value belongs
+  /// to the roughest fields: for square cells without cross contraction 0.2903 h/G where q changes sign from cell to
+  /// cell along both axes, 0.3712 times the shorter side over G where cells are oblong. Cross contraction lowers it by
+  /// 1 - nu at most, or raises it. Smooth cell tractions raise it, most for the roughest fields.
   double least_eigenvalue(double h1, double h2) const override;
 
   bool couples() const override { return pair_.mismatch != 0.0; }
   void add_to(CacheKey& key) const override;
 
  private:
-  std::vector<std::vector<double>> tables_of_constant(std::span<const Component> components,
-                                                      const Grid& offsets, int threads) const;
+  std::vector<std::vector<double>> tables_of_constant(std::span<const Component> components, const Grid& offsets,
+                                                      int threads) const;
 
   ElasticPair pair_;
   CellTraction cell_traction_;

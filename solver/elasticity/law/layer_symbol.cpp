@@ -26,8 +26,7 @@ double tail(double term, double y, int n) {
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
   const double compliance = 1.0 / body.surface.shear_modulus;
   const double plane = (1.0 - body.surface.poisson_ratio) * compliance;
-  if (std::isinf(body.thickness))
-    return {compliance, plane, plane, (0.5 - body.surface.poisson_ratio) * compliance};
+  if (std::isinf(body.thickness)) return {compliance, plane, plane, (0.5 - body.surface.poisson_ratio) * compliance};
   const double mu = body.surface.shear_modulus / body.base.shear_modulus;
   const double k1 = 3.0 - 4.0 * body.surface.poisson_ratio;
   const double k2 = 3.0 - 4.0 * body.base.poisson_ratio;
@@ -46,8 +45,7 @@ WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
   const double y = 2.0 * x;
   // exp(-2 x) times sinh(2 x) - 2 x, and times cosh(2 x) - 1 - 2 x^2.
   const double sinh_excess = x < kSmall ? e * tail(y * y * y / 6.0, y, 3) : 0.5 * fall_twice - y * e;
-  const double cosh_excess =
-      x < kSmall ? e * tail(y * y * y * y / 24.0, y, 4) : 0.5 * fall * fall - 2.0 * x * x * e;
+  const double cosh_excess = x < kSmall ? e * tail(y * y * y * y / 24.0, y, 4) : 0.5 * fall * fall - 2.0 * x * x * e;
 
   const double denominator =
       bonded * e + (2.0 - open) * cosh_excess + 0.5 * open * fall_twice + 2.0 * below * x * x * e;

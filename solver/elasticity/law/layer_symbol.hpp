@@ -22,10 +22,9 @@ struct WaveCompliance {
   double coupling;  ///< over i: along the wave vector, by a pressure
 };
 
-/// At a wave number above 0; an infinite one depends only on the surface layer. By the bonding constants of
-/// Burmister (1945), as in O'Sullivan and King (Journal of Tribology 110, 1988). No exponential grows,
-/// denominators are sums of positive terms, and differences that cancel on a thin layer are written as a
-/// series or by expm1.
+/// At a wave number above 0; an infinite one depends only on the surface layer. By the bonding constants of Burmister
+/// (1945), as in O'Sullivan and King (Journal of Tribology 110, 1988). No exponential grows, denominators are sums of
+/// positive terms, and differences that cancel on a thin layer are written as a series or by expm1.
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number);
 
 }  // namespace slipstick::solver

@@ -19,8 +19,8 @@ class WinklerLayer final : public ElasticLaw {
   WinklerLayer(SharedLaw bodies, double normal_compliance, double tangential_compliance)
       : bodies_(std::move(bodies)), normal_(normal_compliance), tangential_(tangential_compliance) {}
 
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
-                                                    const Grid& offsets, int threads = 1) const override {
+  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
+                                                    int threads = 1) const override {
     auto tables = bodies_->influence_tables(components, offsets, threads);
     for (std::size_t c = 0; c < components.size(); ++c) tables[c].front() += compliance(components[c]);
     return tables;
@@ -50,14 +50,13 @@ class WinklerLayer final : public ElasticLaw {
   }
 
   static LawKind kind() {
-    return {
-        .word = "winkler",
-        .meaning = "a thin layer that gives way where it is loaded and nowhere else",
-        .parameters = {{"normal_compliance", "m/Pa", 1, -1, "How far the layer gives way to a pressure."},
-                       {"tangential_compliance", "m/Pa", 1, -1, "How far it gives way to a shear traction."}},
-        .make = [](const SharedLaw& bodies, std::span<const double> compliances) -> SharedLaw {
-          return std::make_shared<WinklerLayer>(bodies, compliances[0], compliances[1]);
-        }};
+    return {.word = "winkler",
+            .meaning = "a thin layer that gives way where it is loaded and nowhere else",
+            .parameters = {{"normal_compliance", "m/Pa", 1, -1, "How far the layer gives way to a pressure."},
+                           {"tangential_compliance", "m/Pa", 1, -1, "How far it gives way to a shear traction."}},
+            .make = [](const SharedLaw& bodies, std::span<const double> compliances) -> SharedLaw {
+              return std::make_shared<WinklerLayer>(bodies, compliances[0], compliances[1]);
+            }};
   }
 
  private:

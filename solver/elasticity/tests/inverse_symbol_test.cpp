@@ -49,17 +49,16 @@ struct SymbolCase {
 void PrintTo(const SymbolCase& tested, std::ostream* stream) { *stream << tested.name; }
 
 std::vector<SymbolCase> symbol_cases() {
-  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 8, 1.0, 0.5},   {7, 1, 0.5, 1.0},
-                                {2, 3, 1e-3, 1e-3}, {16, 16, 1.0, 1.0}, {9, 15, 1.0, 1.0},
-                                {13, 17, 1.0, 2.0}, {37, 31, 1.0, 0.3}, {64, 48, 1.0, 1.5},
-                                {5, 128, 1.0, 1.0}, {9, 9, 2.0, 2.0},   {13, 13, 0.1, 0.1}};
+  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 8, 1.0, 0.5},   {7, 1, 0.5, 1.0},   {2, 3, 1e-3, 1e-3},
+                                {16, 16, 1.0, 1.0}, {9, 15, 1.0, 1.0},  {13, 17, 1.0, 2.0}, {37, 31, 1.0, 0.3},
+                                {64, 48, 1.0, 1.5}, {5, 128, 1.0, 1.0}, {9, 9, 2.0, 2.0},   {13, 13, 0.1, 0.1}};
   std::vector<SymbolCase> cases;
   for (Grid grid : grids) {
     for (const bool quadrant : {false, true}) {
       grid.quadrant = quadrant;
       for (const bool tangential : {false, true}) {
-        const std::string name = std::string(quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) +
-                                 "x" + std::to_string(grid.n2) + (tangential ? "_tangential" : "_normal");
+        const std::string name = std::string(quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) + "x" +
+                                 std::to_string(grid.n2) + (tangential ? "_tangential" : "_normal");
         cases.push_back({name, grid, tangential});
         if (quadrant && tangential && grid.n1 == grid.n2) {
           cases.push_back({name + "_diagonal", grid, tangential, true});
@@ -83,8 +82,7 @@ class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases()), testing::PrintToStringParamName());
 
 /// On quadrants, without and with a mirror at the diagonal.
 class QuadrantSymbol : public InverseSymbolOf {};
@@ -92,9 +90,8 @@ class DiagonalSymbol : public InverseSymbolOf {};
 
 std::vector<SymbolCase> cases_with(bool diagonal) {
   std::vector<SymbolCase> cases = symbol_cases();
-  std::erase_if(cases, [&](const SymbolCase& tested) {
-    return !tested.grid.quadrant || (diagonal && !tested.diagonal);
-  });
+  std::erase_if(cases,
+                [&](const SymbolCase& tested) { return !tested.grid.quadrant || (diagonal && !tested.diagonal); });
   return cases;
 }
 
@@ -173,16 +170,15 @@ TEST(PlaneWave, IsMultipliedByTheInverseSymbol) {
     ArrayXd wave(grid.cells());
     for (Index i = 0; i < grid.n1; ++i) {
       for (Index j = 0; j < grid.n2; ++j) {
-        wave[i * grid.n2 + j] = std::cos(
-            2.0 * kPi * (static_cast<double>(f1 * i) / 24.0 + static_cast<double>(f2 * j) / 40.0 + 0.2));
+        wave[i * grid.n2 + j] =
+            std::cos(2.0 * kPi * (static_cast<double>(f1 * i) / 24.0 + static_cast<double>(f2 * j) / 40.0 + 0.2));
       }
     }
     ArrayXd longitudinal(2 * grid.cells());
     longitudinal << xi1 * wave, xi2 * wave;
     ArrayXd transverse(2 * grid.cells());
     transverse << -xi2 * wave, xi1 * wave;
-    EXPECT_LE(relative_difference(applied(*tangential, longitudinal), xi / (1.0 - nu) * longitudinal),
-              kSymbolRounding);
+    EXPECT_LE(relative_difference(applied(*tangential, longitudinal), xi / (1.0 - nu) * longitudinal), kSymbolRounding);
     EXPECT_LE(relative_difference(applied(*tangential, transverse), xi * transverse), kSymbolRounding);
     EXPECT_LE(relative_difference(applied(*normal, wave), xi / (1.0 - nu) * wave), kSymbolRounding);
   }
@@ -196,9 +192,8 @@ TEST(ConstantField, IsMultipliedByHalfOfTheSmallestFrequency) {
   const auto tangential = make_inverse_symbol(grid, tangential_kernel(), pair_of(0.3));
   EXPECT_LE(relative_difference(applied(*tangential, ones), xi * ones), kSymbolRounding);
   const auto normal = make_inverse_symbol(grid, normal_kernel(), pair_of(0.3));
-  EXPECT_LE(
-      relative_difference(applied(*normal, ones.head(grid.cells())), xi / 0.7 * ones.head(grid.cells())),
-      kSymbolRounding);
+  EXPECT_LE(relative_difference(applied(*normal, ones.head(grid.cells())), xi / 0.7 * ones.head(grid.cells())),
+            kSymbolRounding);
 }
 
 /// The response of one loaded cell at that cell.
@@ -250,8 +245,7 @@ TEST(InverseSymbol, RefusesOtherKernelsAndSymmetries) {
     EXPECT_THROW(make_inverse_symbol({8, 8, 1.0, 1.0}, kernel, pair_of(0.3)), std::invalid_argument);
     EXPECT_THROW(make_inverse_symbol(square, kernel, pair_of(0.3)), std::invalid_argument);
   }
-  EXPECT_THROW(make_inverse_symbol(square, normal_kernel(), pair_of(0.3), {.diagonal = true}),
-               std::invalid_argument);
+  EXPECT_THROW(make_inverse_symbol(square, normal_kernel(), pair_of(0.3), {.diagonal = true}), std::invalid_argument);
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ double coefficient(Component component, const Grid& grid, Index point, Index sou
   const Index k1 = point / grid.n2 - source / grid.n2;
   const Index k2 = point % grid.n2 - source % grid.n2;
   const int sign = (k1 < 0 ? parity(component).x1 : 1) * (k2 < 0 ? parity(component).x2 : 1);
-  const auto quadrant = dissimilar_pair().influence_coefficients(
-      component, {std::abs(k1) + 1, std::abs(k2) + 1, grid.h1, grid.h2});
+  const auto quadrant =
+      dissimilar_pair().influence_coefficients(component, {std::abs(k1) + 1, std::abs(k2) + 1, grid.h1, grid.h2});
   return sign * quadrant.back();
 }
 
@@ -60,10 +60,9 @@ void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << test
 
 std::vector<OperatorCase> operator_cases() {
   // One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
-  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},
-                                {16, 16, 1.0, 1.0}, {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0},
-                                {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3},
-                                {3, 5, 1.0, 1.0},   {11, 3, 1.0, 1.0},  {25, 20, 1.0, 1.0}};
+  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},   {16, 16, 1.0, 1.0},
+                                {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0}, {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},
+                                {2, 3, 1e-3, 1e-3}, {3, 5, 1.0, 1.0},   {11, 3, 1.0, 1.0},  {25, 20, 1.0, 1.0}};
   std::vector<OperatorCase> cases;
   for (const Grid& grid : grids) {
     const std::string shape = std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
@@ -95,8 +94,7 @@ class Operator : public testing::TestWithParam<OperatorCase> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()), testing::PrintToStringParamName());
 
 std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
   std::vector<OperatorCase> cases = operator_cases();
@@ -104,8 +102,7 @@ std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
   return cases;
 }
 
-/// Traction and displacement in the same direction, both components read: all but the coupling and the
-/// diagonal.
+/// Traction and displacement in the same direction, both components read: all but the coupling and the diagonal.
 class SquareOperator : public Operator {};
 class WholeOperator : public Operator {};
 class QuadrantOperator : public Operator {};

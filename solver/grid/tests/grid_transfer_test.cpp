@@ -35,8 +35,7 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Grid, bool>>& tested
   const auto& [grid, quadrant] = tested.param;
   return (quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
 }
-INSTANTIATE_TEST_SUITE_P(Sizes, Transfer, testing::Combine(testing::ValuesIn(kGrids), testing::Bool()),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Sizes, Transfer, testing::Combine(testing::ValuesIn(kGrids), testing::Bool()), name_of);
 
 double largest_difference(const ArrayXd& a, const ArrayXd& b) {
   EXPECT_EQ(a.size(), b.size());
@@ -81,12 +80,12 @@ TEST_P(Transfer, RestrictionTakesTheMeanOverEachCoarseCell) {
   const ArrayXd restricted = restrict_to(coarse_, fine_, field);
   ASSERT_EQ(restricted.size(), 2 * coarse_.cells());
   // Positions are differences of numbers up to 128 here.
-  EXPECT_LE(largest_difference(restricted.head(coarse_.cells()),
-                               mean_by_areas(coarse_, fine_, field.head(fine_.cells()))),
-            1e-12);
-  EXPECT_LE(largest_difference(restricted.tail(coarse_.cells()),
-                               mean_by_areas(coarse_, fine_, field.tail(fine_.cells()))),
-            1e-12);
+  EXPECT_LE(
+      largest_difference(restricted.head(coarse_.cells()), mean_by_areas(coarse_, fine_, field.head(fine_.cells()))),
+      1e-12);
+  EXPECT_LE(
+      largest_difference(restricted.tail(coarse_.cells()), mean_by_areas(coarse_, fine_, field.tail(fine_.cells()))),
+      1e-12);
 }
 
 /// a + b x1 + c x2 + d x1 x2, and each coordinate held at the outer coarse centres beyond them. Even in both
@@ -124,25 +123,17 @@ TEST_P(QuadrantTransfer, IsThatOfTheMirrorImages) {
   const Symmetry all{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
   const ArrayXd on_coarse = random_field(4 * coarse.cells(), 3);
   const ArrayXd whole = prolong_to(whole_grid(fine), whole_grid(coarse), unfold(coarse, on_coarse, all), all);
-  EXPECT_LE(largest_difference(unfold(fine, prolong_to(fine, coarse, on_coarse, all), all), whole),
-            kRounding);
+  EXPECT_LE(largest_difference(unfold(fine, prolong_to(fine, coarse, on_coarse, all), all), whole), kRounding);
 
   const ArrayXd on_fine = random_field(4 * fine.cells(), 4);
   const ArrayXd restricted = restrict_to(whole_grid(coarse), whole_grid(fine), unfold(fine, on_fine, all));
-  EXPECT_LE(largest_difference(unfold(coarse, restrict_to(coarse, fine, on_fine), all), restricted),
-            10.0 * kRounding);
+  EXPECT_LE(largest_difference(unfold(coarse, restrict_to(coarse, fine, on_fine), all), restricted), 10.0 * kRounding);
 }
 
 TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
   for (const bool quadrant : {false, true}) {
-    for (const auto& [n1, n2] : std::vector<std::pair<Index, Index>>{{1, 1},
-                                                                     {1, 4096},
-                                                                     {4096, 1},
-                                                                     {3, 100000},
-                                                                     {17, 4096},
-                                                                     {512, 512},
-                                                                     {1023, 61},
-                                                                     {100000, 100000}}) {
+    for (const auto& [n1, n2] : std::vector<std::pair<Index, Index>>{
+             {1, 1}, {1, 4096}, {4096, 1}, {3, 100000}, {17, 4096}, {512, 512}, {1023, 61}, {100000, 100000}}) {
       Grid grid{n1, n2, 1.0, 1.0, quadrant};
       int steps = 0;
       for (; can_coarsen(grid); grid = coarser(grid)) ASSERT_LT(++steps, 20) << n1 << " x " << n2;
@@ -169,8 +160,7 @@ TEST(MeansOn, OtherCellsHoldTheIntegral) {
   const ArrayXd moved = means_on(part, from, field, {1.25, -4.0});  // from cells (7, 1) on, two by one
   for (Index i = 0; i < 2; ++i) {
     for (Index j = 0; j < 3; ++j) {
-      const double expected =
-          0.5 * (field[(7 + 2 * i) * from.n2 + 1 + j] + field[(8 + 2 * i) * from.n2 + 1 + j]);
+      const double expected = 0.5 * (field[(7 + 2 * i) * from.n2 + 1 + j] + field[(8 + 2 * i) * from.n2 + 1 + j]);
       EXPECT_NEAR(moved[i * 3 + j], expected, kRounding);
     }
   }

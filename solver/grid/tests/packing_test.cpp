@@ -89,8 +89,7 @@ TEST_P(PackingOf, MovesAsTheGridDoes) {
   });
 }
 
-/// The displacements of a body that is moved and turned by a little: each cell's displacement, component by
-/// component.
+/// The displacements of a body that is moved and turned by a little: each cell's displacement, component by component.
 TEST(MotionField, IsTheDisplacementOfEachCell) {
   for (const Grid& grid : {Grid{6, 5, 0.3, 0.7}, Grid{4, 3, 0.5, 0.2, true}}) {
     const MotionField motion(grid, 0.25, -1.5, 0.8);

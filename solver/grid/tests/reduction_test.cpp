@@ -162,8 +162,7 @@ TEST(Trimming, OfAnEmptyFieldLeavesTheMiddle) {
 
 /// Wide, square and oblong, trimmed and not, quadrants and none.
 std::vector<Reduction> reductions_of(const Grid& grid) {
-  return {Reduction(grid), Reduction(grid, patch(grid, 2.6)), of(grid, patch(grid, 2.6)),
-          of(grid, patch(grid, 100.0))};
+  return {Reduction(grid), Reduction(grid, patch(grid, 2.6)), of(grid, patch(grid, 2.6)), of(grid, patch(grid, 100.0))};
 }
 
 TEST(ThereAndBack, ExpandedFieldsComeBackUnchanged) {
@@ -177,9 +176,7 @@ TEST(ThereAndBack, ExpandedFieldsComeBackUnchanged) {
   }
 }
 
-TEST(ThereAndBack, NoFieldStaysNone) {
-  EXPECT_EQ(of(kSquare, patch(kSquare, 2.6)).restricted(ArrayXd()).size(), 0);
-}
+TEST(ThereAndBack, NoFieldStaysNone) { EXPECT_EQ(of(kSquare, patch(kSquare, 2.6)).restricted(ArrayXd()).size(), 0); }
 
 // --- mirror images ---
 

@@ -38,8 +38,7 @@ TEST(Sweep, VisitsEachOfItsCellsOnce) {
         EXPECT_EQ(sweep.size(), cells);
         EXPECT_EQ(sweep.count(), (field != 0.0).count());
         const std::vector<int> counts = visits(sweep);
-        for (Index i = 0; i < cells; ++i)
-          EXPECT_EQ(counts[static_cast<std::size_t>(i)], field[i] != 0.0) << i;
+        for (Index i = 0; i < cells; ++i) EXPECT_EQ(counts[static_cast<std::size_t>(i)], field[i] != 0.0) << i;
       }
     }
   }
@@ -51,8 +50,7 @@ double sum_of(const Sweep& sweep, const ArrayXd& field) {
   });
 }
 
-/// A disc, a ring and two discs side by side are smooth; spots on every other cell, and scattered ones, are
-/// ragged.
+/// A disc, a ring and two discs side by side are smooth; spots on every other cell, and scattered ones, are ragged.
 TEST(Sweep, IsRaggedWhereItsCellsLieInSpots) {
   const Grid grid{64, 48, 1.0, 1.0};
   const auto ragged = [&](const auto& contains) {
@@ -66,8 +64,7 @@ TEST(Sweep, IsRaggedWhereItsCellsLieInSpots) {
   };
   EXPECT_FALSE(ragged([](Index, double x1, double x2) { return std::hypot(x1, x2) < 20.0; }));
   EXPECT_FALSE(ragged([](Index, double x1, double x2) { return std::abs(std::hypot(x1, x2) - 18.0) < 4.0; }));
-  EXPECT_FALSE(
-      ragged([](Index, double x1, double x2) { return std::hypot(std::abs(x1) - 15.0, x2) < 12.0; }));
+  EXPECT_FALSE(ragged([](Index, double x1, double x2) { return std::hypot(std::abs(x1) - 15.0, x2) < 12.0; }));
   EXPECT_TRUE(ragged([](Index cell, double, double) { return cell % 2 == 0; }));
   const ArrayXd spots = scattered(grid.cells(), 5, 0.0);
   EXPECT_TRUE(ragged([&](Index cell, double, double) { return spots[cell] != 0.0; }));

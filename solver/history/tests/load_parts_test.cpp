@@ -33,8 +33,7 @@ TEST_F(SceneFile, AStateOfAnotherSceneIsRefused) {
   const std::string steps = "[[step]]\nforce = [50, 0]\n[[step]]\nmoment_ratio = 0.5\n";
   const Scene scene = read(kShortScene + steps, {"load.moment_ratio=0"});
   std::shared_ptr<HistoryState> left;
-  solve(scene,
-        {.observer = {.state = [&](const HistoryState& at) { left = std::make_shared<HistoryState>(at); }}});
+  solve(scene, {.observer = {.state = [&](const HistoryState& at) { left = std::make_shared<HistoryState>(at); }}});
   const Scene other = read(kShortScene + steps, {"load.moment_ratio=0", "grid.cells=[12,12]"});
   EXPECT_THROW(solve(other, {.resumed = left}), std::invalid_argument);
   for (const std::size_t finished : {0U, 2U, 3U}) {
@@ -79,8 +78,7 @@ TEST(Energy, GoesIntoHeatAndElasticity) {
   std::array<double, 2> at{};
   for (const ModelSolution& step : steps) {
     const Eigen::ArrayXd change = step.tangential.traction - before;
-    const double loads = step.moment * (step.twist_angle - twist) +
-                         step.force[0] * (step.displacement[0] - at[0]) +
+    const double loads = step.moment * (step.twist_angle - twist) + step.force[0] * (step.displacement[0] - at[0]) +
                          step.force[1] * (step.displacement[1] - at[1]);
     const double scale = step.dissipated + step.elastic_energy;
     EXPECT_NEAR(step.dissipated + step.elastic_energy - stored + 0.5 * in_energy_norm(step, change), loads,

@@ -20,10 +20,9 @@ class FieldFile : public ScratchFolder {
   /// Values that lose bits where fewer than 17 digits are written.
   std::vector<Column> columns_{
       {"x1", cell_x1(grid_)},
-      {"pressure",
-       (ArrayXd(6) << 1.0 / 3.0, -0.1, std::numbers::pi * 1e300, std::numeric_limits<double>::denorm_min(),
-        std::numeric_limits<double>::max(), 1.0 + std::numeric_limits<double>::epsilon())
-           .finished()}};
+      {"pressure", (ArrayXd(6) << 1.0 / 3.0, -0.1, std::numbers::pi * 1e300, std::numeric_limits<double>::denorm_min(),
+                    std::numeric_limits<double>::max(), 1.0 + std::numeric_limits<double>::epsilon())
+                       .finished()}};
 };
 
 class Format : public FieldFile, public testing::WithParamInterface<std::string> {};
@@ -53,8 +52,8 @@ TEST_F(FieldFile, VtiHasTheGridsExtentsAndOrder) {
   Column numbered{"number", ArrayXd::LinSpaced(6, 0.0, 5.0)};  // i*2 + j
   write_fields(file, grid_, {numbered, columns_[0]}, ArrayXd::Zero(6));
   const std::string text = file_text(file);
-  EXPECT_THAT(text, says("WholeExtent=\"0 3 0 2 0 0\"", "<Piece Extent=\"0 3 0 2 0 0\">",
-                         "Origin=\"-0.75 -0.25 0\"", "Spacing=\"0.5 0.25 1\"", "Name=\"x1\"", "</VTKFile>"));
+  EXPECT_THAT(text, says("WholeExtent=\"0 3 0 2 0 0\"", "<Piece Extent=\"0 3 0 2 0 0\">", "Origin=\"-0.75 -0.25 0\"",
+                         "Spacing=\"0.5 0.25 1\"", "Name=\"x1\"", "</VTKFile>"));
   const auto start = text.find("Name=\"number\"");
   ASSERT_NE(start, std::string::npos);
   const auto first = text.find('>', start) + 1;

@@ -13,8 +13,7 @@ namespace {
 using Eigen::ArrayXd;
 
 ArrayXd written(const ArrayXd& values, const std::string& format) {
-  return values.unaryExpr(
-      [&](double x) { return std::strtod(fmt::format(fmt::runtime(format), x).c_str(), nullptr); });
+  return values.unaryExpr([&](double x) { return std::strtod(fmt::format(fmt::runtime(format), x).c_str(), nullptr); });
 }
 
 TEST(FilePrecision, IsThatOfTheDigitsWritten) {

@@ -16,8 +16,7 @@
 /// Files and refusals for the fuzz targets.
 namespace slipstick::solver {
 
-/// The file that gets a fuzzer's bytes, for a reader to open, in a folder of its own that goes when this
-/// goes.
+/// The file that gets a fuzzer's bytes, for a reader to open, in a folder of its own that goes when this goes.
 class FuzzFile {
  public:
   explicit FuzzFile(const std::string& name) {

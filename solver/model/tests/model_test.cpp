@@ -43,8 +43,7 @@ TEST(Model, IsDimensionless) {
 static_assert(!std::is_assignable_v<LengthUnit&, double> && !std::is_assignable_v<LengthUnit&, LengthUnit>);
 static_assert(!std::is_constructible_v<LengthUnit, double>);
 
-/// One thread takes few cells, and a quadrant has a quarter of them. A number of threads in the scene is
-/// kept.
+/// One thread takes few cells, and a quadrant has a quarter of them. A number of threads in the scene is kept.
 TEST(Model, HasThreadsThatAreWorthTheirCells) {
   const auto threads = [](Index cells, ModelChoice choice, int asked) {
     Scene scene = paper_scene(cells, 0.5);

@@ -65,9 +65,7 @@ double energy(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) {
   return 0.5 * q.matrix().dot(K * q.matrix()) + (g * q).sum();
 }
 
-ArrayXd displacement(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) {
-  return (K * q.matrix()).array() + g;
-}
+ArrayXd displacement(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) { return (K * q.matrix()).array() + g; }
 
 /// The point with a given c.q on the segment between two fields; a convex set contains it with its ends.
 ArrayXd with_load(const ArrayXd& below, const ArrayXd& above, const ArrayXd& c, double load) {
@@ -98,9 +96,7 @@ class Admissible : public testing::Test {
     }
     return q;
   }
-  static ArrayXd extreme(const Set& set, const ArrayXd& c, double length) {
-    return projected(set, length * c);
-  }
+  static ArrayXd extreme(const Set& set, const ArrayXd& c, double length) { return projected(set, length * c); }
 };
 using Sets = testing::Types<PositivePressures, FrictionDiscs>;
 
@@ -175,8 +171,7 @@ TYPED_TEST(Admissible, LoadAlongAMotionIsThatAlongItsField) {
   EXPECT_NEAR(motion.slope(0, 0), kept_motion.slope(0, 0), largest);
 }
 
-/// Whatever the multiplier, the gap is at least what the energy can fall by under the same load, and
-/// positive.
+/// Whatever the multiplier, the gap is at least what the energy can fall by under the same load, and positive.
 TYPED_TEST(Admissible, GapBoundsWhatTheEnergyCanFallBy) {
   const ArrayXd shape = this->shape(9);
   const TypeParam set(shape);
@@ -267,15 +262,13 @@ Matrix2d jacobian(const FrictionDiscs& set, const ArrayXd& z, Index cell) {
   for (const Index c : {0, 1}) {
     ArrayXd shift = ArrayXd::Zero(z.size());
     shift[cell + c * set.cells()] = step;
-    const ArrayXd slope =
-        (projected(set, ArrayXd(z + shift)) - projected(set, ArrayXd(z - shift))) / (2.0 * step);
+    const ArrayXd slope = (projected(set, ArrayXd(z + shift)) - projected(set, ArrayXd(z - shift))) / (2.0 * step);
     result.col(c) << slope[cell], slope[cell + set.cells()];
   }
   return result;
 }
 
-/// d = P'(z)(d - rho K d) on the tangent space is (K + stiffness) d with P'(z) = projector/(1 + rho
-/// stiffness).
+/// d = P'(z)(d - rho K d) on the tangent space is (K + stiffness) d with P'(z) = projector/(1 + rho stiffness).
 TEST(FrictionLinearised, IsTheDerivativeOfTheProjection) {
   Random random(13);
   const ArrayXd bound = random.bounds(kCells);

@@ -21,8 +21,7 @@ using Eigen::VectorXd;
 using testing::HasSubstr;
 
 const HalfSpaces kPair(elastic_pair({2.0, 0.3}, {2.0, 0.3}));
-/// Residuals fall by this factor. They belong to random right-hand sides, which lie mostly across the tangent
-/// space.
+/// Residuals fall by this factor. They belong to random right-hand sides, which lie mostly across the tangent space.
 constexpr double kReduction = 1e-13;
 /// The relative error of the solution then: the systems of some tens of unknowns have condition numbers of
 /// some hundreds.
@@ -142,15 +141,13 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Grid, bool>>& tested
   return (vectors ? "vectors_" : "scalars_") + std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
 }
 INSTANTIATE_TEST_SUITE_P(Grids, CgOn,
-                         testing::Combine(testing::Values(Grid{6, 5, 1.0, 1.0}, Grid{4, 9, 1.0, 1.7}),
-                                          testing::Bool()),
+                         testing::Combine(testing::Values(Grid{6, 5, 1.0, 1.0}, Grid{4, 9, 1.0, 1.7}), testing::Bool()),
                          name_of);
 
 /// The fields side by side in an array, as conditions.
 std::vector<FieldCondition> conditions_of(const ArrayXd& fields, Index size) {
   std::vector<FieldCondition> conditions;
-  for (Index start = 0; start < fields.size(); start += size)
-    conditions.push_back({fields.segment(start, size)});
+  for (Index start = 0; start < fields.size(); start += size) conditions.push_back({fields.segment(start, size)});
   return conditions;
 }
 
@@ -171,8 +168,8 @@ TEST_P(CgOn, SolvesUnderNoneOneAndThreeConditions) {
       const MatrixXd columns = c.matrix().reshaped(b.size, count);
       ASSERT_TRUE(b.cg.precondition(b.space, conditions_of(c, b.size)));
       b.cg.residual() = r;
-      const CgSummary summary = count == 0 ? b.cg.solve(b.space, kReduction, kMany)
-                                           : b.cg.solve_constrained(b.space, kReduction, kMany);
+      const CgSummary summary =
+          count == 0 ? b.cg.solve(b.space, kReduction, kMany) : b.cg.solve_constrained(b.space, kReduction, kMany);
       expect_solved(b, summary, r, columns);
       if (count == 0) {
         EXPECT_LE(summary.reduction, kReduction);
@@ -180,8 +177,7 @@ TEST_P(CgOn, SolvesUnderNoneOneAndThreeConditions) {
       if (count < 3) continue;
       MatrixXd answers(b.size, count);
       for (Index k = 0; k < count; ++k) answers.col(k) = b.inverse(columns.col(k));
-      const VectorXd multipliers =
-          dense_solution(columns.transpose() * answers, answers.transpose() * r.matrix());
+      const VectorXd multipliers = dense_solution(columns.transpose() * answers, answers.transpose() * r.matrix());
       EXPECT_LE((summary.multipliers - multipliers).norm(), kSolved * multipliers.norm());
     }
   }
@@ -246,8 +242,7 @@ TEST_P(CgOn, FindsTheMultiplierAsWellAsTheResidualSays) {
     EXPECT_NEAR(w.dot(left) / w.dot(c.matrix()), exact - measured, kSolved * std::abs(exact));
     b.cg.precondition(b.space, one(c));
     b.cg.residual() = r;
-    EXPECT_NEAR(b.cg.solve_constrained(b.space, 0.0, iterations).multipliers[0], measured,
-                kSolved * std::abs(exact));
+    EXPECT_NEAR(b.cg.solve_constrained(b.space, 0.0, iterations).multipliers[0], measured, kSolved * std::abs(exact));
     if (iterations == 40) {
       EXPECT_NEAR(measured, exact, 1e-3 * std::abs(exact));
     }

@@ -63,8 +63,7 @@ TEST(Extension, ContinuesWhatSlipHoldsFast) {
   const ArrayXd slips = ArrayXd::Random(packing.cells().size());
   for (Index i = 0; i < slips.size(); ++i) {
     space.set(i, true);
-    if (slips[i] > 0.0)
-      space.set_line(i, std::cos(slips[i]), std::sin(slips[i]), slips[i] < 0.5 ? 0.0 : 1.0, 1.0);
+    if (slips[i] > 0.0) space.set_line(i, std::cos(slips[i]), std::sin(slips[i]), slips[i] < 0.5 ? 0.0 : 1.0, 1.0);
   }
   const auto free_part = [&](const ArrayXd& field) {
     ArrayXd part = packing.packed(field);
@@ -123,8 +122,7 @@ TEST(Extension, MovesWithTheContact) {
     extension.collect(collected);
     collected *= free;
     const auto window = [&](const ArrayXd& field) -> Eigen::ArrayXXd {
-      return Eigen::Map<const Eigen::ArrayXXd>(field.data(), grid.n2, grid.n1)
-          .block(column, row, kColumns, kRows);
+      return Eigen::Map<const Eigen::ArrayXXd>(field.data(), grid.n2, grid.n1).block(column, row, kColumns, kRows);
     };
     return Continued{window(extended), window(collected)};
   };

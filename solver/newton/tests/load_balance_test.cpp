@@ -189,8 +189,7 @@ TEST_P(Balance, KnowsWhatIsNotANumber) {
   const LoadBalance balance(discs, body.conditions(body.loads(0.5)));
   Index slipping = 0;
   body.bound.maxCoeff(&slipping);
-  for (const double wrong :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     y[slipping] = wrong;
     Coefficients x = Coefficients::Zero(GetParam());
     EXPECT_FALSE(balance.solve(y, x));

@@ -29,9 +29,7 @@ class Newton : public testing::Test {
   NewtonSummary run(LinearOperator& op, InverseSymbol& symbol, ArrayXd& q, const NewtonOptions& options) {
     return minimise(discs_, program_, op, symbol, all_, q, {}, options);
   }
-  NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) {
-    return run(*bench_.op, *symbol_, q, options);
-  }
+  NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) { return run(*bench_.op, *symbol_, q, options); }
   double energy(const ArrayXd& q) {
     ArrayXd u(q.size());
     bench_.op->apply(q, u);
@@ -57,9 +55,8 @@ TEST_F(Newton, ReachesTheSameMinimumFromAnyStart) {
   std::normal_distribution<double> normal;
   const double largest = bench_.bound.maxCoeff();
   const ArrayXd noise = ArrayXd::NullaryExpr(q_.size(), [&] { return largest * normal(generator); });
-  for (const ArrayXd& start :
-       {ArrayXd(1e6 * rotation_), ArrayXd(-1e6 * rotation_), noise, ArrayXd(1e3 * noise), ArrayXd(-q_),
-        ArrayXd(ArrayXd::Constant(q_.size(), largest))}) {
+  for (const ArrayXd& start : {ArrayXd(1e6 * rotation_), ArrayXd(-1e6 * rotation_), noise, ArrayXd(1e3 * noise),
+                               ArrayXd(-q_), ArrayXd(ArrayXd::Constant(q_.size(), largest))}) {
     ArrayXd q = start;
     const NewtonSummary summary = run(q);
     EXPECT_TRUE(summary.converged) << summary.message;

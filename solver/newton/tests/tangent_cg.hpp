@@ -69,8 +69,7 @@ class TangentCg {
 
  private:
   using Constraints = CgConstraints<FieldCondition>;
-  CgSummary run(const TangentSpace& space, const Constraints& constraints, double reduction,
-                int max_iterations) {
+  CgSummary run(const TangentSpace& space, const Constraints& constraints, double reduction, int max_iterations) {
     TangentOperator map{op_, space, packing_};
     TangentPreconditioner inverse{symbol_, space, packing_};
     x_.setZero();

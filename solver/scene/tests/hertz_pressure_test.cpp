@@ -41,8 +41,7 @@ TEST(HertzAverages, SumToTheLoad) {
 
 /// Against the integral over x2 in closed form and the midpoint rule over x1, in a variable that removes the
 /// square roots at the ends.
-double average_by_quadrature(const HertzContact& contact, double left, double right, double low,
-                             double high) {
+double average_by_quadrature(const HertzContact& contact, double left, double right, double low, double high) {
   constexpr int kPoints = 200'000;
   const double from = std::max(left, -contact.semi_axis_1);
   const double to = std::min(right, contact.semi_axis_1);

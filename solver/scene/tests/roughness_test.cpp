@@ -29,8 +29,7 @@ constexpr double kHeightRounding = 1e3 * kEpsilon;
 
 /// The waves between a period and half of it, one by one: as many as one can write down.
 TEST(Roughness, IsASumOfWaves) {
-  const Roughness roughness{
-      .seed = 3, .hurst = 0.4, .longest = 2.0, .shortest = 1.0, .rms_slope = 0.05, .period = 2.0};
+  const Roughness roughness{.seed = 3, .hurst = 0.4, .longest = 2.0, .shortest = 1.0, .rms_slope = 0.05, .period = 2.0};
   const std::vector<std::array<double, 2>> waves{{0, 1}, {1, 0}, {1, -1}, {1, 1}, {0, 2}, {2, 0}};
   std::mt19937_64 generator(3);
   const Grid grid{5, 4, 0.31, 0.17};

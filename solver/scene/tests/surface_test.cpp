@@ -1,5 +1,4 @@
-// Shapes of the indenter, and contacts that are known from others: the same body turned, shifted, put
-// together.
+// Shapes of the indenter, and contacts that are known from others: the same body turned, shifted, put together.
 
 #include "solver/scene/surface.hpp"
 
@@ -49,8 +48,7 @@ Scene scene_of(const std::vector<Surface>& surfaces, Index cells, Combine combin
 
 /// One cell about a point.
 double gap_at(const Surface& surface, double x1, double x2) {
-  return gap_field({moved(surface, surface.at[0] - x1, surface.at[1] - x2)}, Combine::sum,
-                   {1, 1, 1.0, 1.0})[0];
+  return gap_field({moved(surface, surface.at[0] - x1, surface.at[1] - x2)}, Combine::sum, {1, 1, 1.0, 1.0})[0];
 }
 
 double approach(const Contact& contact) { return contact.solution.approach * contact.model.length_unit; }
@@ -94,21 +92,18 @@ TEST(Gap, OfSeveralShapesIsTheirSumOrTheNearest) {
 TEST(Gap, WithRoughnessStartsAtZero) {
   const Surface rough{
       .shape = Shape::roughness,
-      .roughness = {
-          .seed = 1, .hurst = 0.8, .longest = 4.0, .shortest = 1.0, .rms_slope = 0.1, .period = 16.0}};
+      .roughness = {.seed = 1, .hurst = 0.8, .longest = 4.0, .shortest = 1.0, .rms_slope = 0.1, .period = 16.0}};
   const Grid grid{12, 12, 0.5, 0.5};
   const ArrayXd heights = roughness_heights(rough.roughness, grid);
-  for (const auto& [face, combine] : {std::pair{punch(2.0, 0.0), Combine::sum},
-                                      {sphere(5.0), Combine::sum},
-                                      {sphere(5.0), Combine::nearest}}) {
+  for (const auto& [face, combine] :
+       {std::pair{punch(2.0, 0.0), Combine::sum}, {sphere(5.0), Combine::sum}, {sphere(5.0), Combine::nearest}}) {
     const ArrayXd gap = gap_field({face, rough}, combine, grid);
     const ArrayXd smooth = gap_field({face}, combine, grid);
     EXPECT_EQ(gap.minCoeff(), 0.0);
     EXPECT_EQ(gap.isFinite().count(), smooth.isFinite().count());
     ArrayXd expected = smooth.min(heights);
     if (combine == Combine::sum) expected = smooth + heights;
-    EXPECT_TRUE(
-        (smooth.isFinite().select(gap - (expected - expected.minCoeff()), 0.0).abs() <= kEpsilon).all());
+    EXPECT_TRUE((smooth.isFinite().select(gap - (expected - expected.minCoeff()), 0.0).abs() <= kEpsilon).all());
   }
 }
 
@@ -162,8 +157,7 @@ TEST(ExpectedContact, OfPowersIsThatOfSphereAndCone) {
     return (*expected_half_sides({surface}, Combine::sum, 3.0, 5.0))[0];
   };
   EXPECT_NEAR(half_side(power(2.0, 0.25)) / half_side(sphere(2.0)), 1.0, 10.0 * kEpsilon);
-  EXPECT_NEAR(half_side(power(1.0, 0.3)) / half_side({.shape = Shape::cone, .slope = 0.3}), 1.0,
-              10.0 * kEpsilon);
+  EXPECT_NEAR(half_side(power(1.0, 0.3)) / half_side({.shape = Shape::cone, .slope = 0.3}), 1.0, 10.0 * kEpsilon);
 }
 
 TEST(ExpectedContact, HoldsAllBodiesSideBySide) {

@@ -23,8 +23,7 @@ const double kInfinite = std::numeric_limits<double>::infinity();
 
 const Surface kShortPeriod{
     .shape = Shape::roughness,
-    .roughness = {
-        .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
+    .roughness = {.seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
 
 /// A layer of the first kind, whose parameters are two compliances.
 template <typename... Values>

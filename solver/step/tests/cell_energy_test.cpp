@@ -16,8 +16,8 @@ namespace {
 using Eigen::ArrayXd;
 
 /// q.Kq/2 by sums over 3 x 3 parts without their middle, with what it misses.
-Estimate whole_energy(const Elasticity& elasticity, const Grid& grid, const ArrayXd& q,
-                      const BlockKernel& kernel, const Symmetry& symmetry) {
+Estimate whole_energy(const Elasticity& elasticity, const Grid& grid, const ArrayXd& q, const BlockKernel& kernel,
+                      const Symmetry& symmetry) {
   const Grid fine = divided(grid, 3);
   const ArrayXd parts = spread_to(fine, grid, q);
   ArrayXd u(parts.size());
@@ -54,8 +54,8 @@ TEST(CellEnergy, OfAQuadrantIsAQuarterOfTheWhole) {
   Elasticity law = elasticity(scene, model, Reduction(whole));
   law.diagonal = false;
   const Estimate quarter = missing_energy(law, quadrant, part, tangential_kernel(), torsion_symmetry());
-  const Estimate all = missing_energy(law, whole, unfold(quadrant, part, torsion_symmetry()),
-                                      tangential_kernel(), torsion_symmetry());
+  const Estimate all =
+      missing_energy(law, whole, unfold(quadrant, part, torsion_symmetry()), tangential_kernel(), torsion_symmetry());
   EXPECT_NEAR(4.0 * quarter.value, all.value, 1e-12 * std::abs(all.value));
 }
 

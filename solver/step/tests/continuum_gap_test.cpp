@@ -46,8 +46,7 @@ DirectSums direct_sums(const Solution& solution, double friction, double nu) {
       std::array<double, 3> k{};
       for (const double sign1 : {-1.0, 1.0}) {
         for (const double sign2 : {-1.0, 1.0}) {
-          const auto term =
-              corner(at1 - x1[cell] + 0.5 * sign1 * grid.h1, at2 - x2[cell] + 0.5 * sign2 * grid.h2);
+          const auto term = corner(at1 - x1[cell] + 0.5 * sign1 * grid.h1, at2 - x2[cell] + 0.5 * sign2 * grid.h2);
           for (std::size_t c = 0; c < 3; ++c) k[c] += sign1 * sign2 * term[c];
         }
       }
@@ -105,8 +104,7 @@ TEST(ContinuumGap, OfThePaperIsBelowTheIntegralOnItsOwn) {
   }
 }
 
-/// The part of the energy that tractions save on cells a quarter as long, under the bound of the coarse
-/// cells.
+/// The part of the energy that tractions save on cells a quarter as long, under the bound of the coarse cells.
 double saved_on_quarters(const Scene& scene, const Solution& coarse) {
   const Model model = make_model(scene);
   const Grid fine = divided(model.grid, 4);
@@ -182,8 +180,7 @@ TEST(PressureGap, BoundsTheDistanceFromFinerPressures) {
     Scene scene = ellipsoid_scene(cells, 0.018 * between(1, 3), 0.018, 0.5);
     const Solution coarse = solve(scene);
     const PressureGap found = pressure_gap(scene, coarse);
-    scene.grid.extent = {static_cast<double>(cells) * coarse.grid.h1,
-                         static_cast<double>(cells) * coarse.grid.h2};
+    scene.grid.extent = {static_cast<double>(cells) * coarse.grid.h1, static_cast<double>(cells) * coarse.grid.h2};
     scene.grid.cells = {4 * cells, 4 * cells};
     const Contact fine = press(scene);
     const Model& model = fine.model;
@@ -196,9 +193,7 @@ TEST(PressureGap, BoundsTheDistanceFromFinerPressures) {
     EXPECT_LT(distance, found.distance);
     EXPECT_GT(distance, 0.1 * found.distance);
     // energy(p) - energy(p_fine) = difference.(K p_fine + h) + |difference|^2/2
-    elasticity(scene, model, Reduction(model.grid))
-        .make(model.grid, normal_kernel())
-        ->apply(fine.solution.pressure, u);
+    elasticity(scene, model, Reduction(model.grid)).make(model.grid, normal_kernel())->apply(fine.solution.pressure, u);
     const double saved = (difference * (u + model.gap)).sum() * in_joule + 0.5 * distance * distance;
     EXPECT_LT(saved, (found.gap + found.quadrature_error) * found.energy);
     EXPECT_GT(saved, 0.0);

@@ -28,8 +28,7 @@ Surface flat_punch(double radius, double inner_radius = 0.0, std::array<double, 
 Surface roughness(std::uint64_t seed = 1) {
   return {
       .shape = Shape::roughness,
-      .roughness = {
-          .seed = seed, .hurst = 0.8, .longest = 2e-4, .shortest = 5e-5, .rms_slope = 0.03, .period = 8e-4}};
+      .roughness = {.seed = seed, .hurst = 0.8, .longest = 2e-4, .shortest = 5e-5, .rms_slope = 0.03, .period = 8e-4}};
 }
 
 Scene scene_of(const std::vector<Surface>& surfaces, std::array<Index, 2> cells, double cell_size,
@@ -61,12 +60,9 @@ std::string follow_refusals(Scene scene) {
 }
 
 Scene two_spheres_side_by_side(double extent) {
-  return scene_of({sphere(0.018, {-4e-4, 0.0}), sphere(0.018, {4e-4, 0.0})}, {64, 64}, extent / 64.0,
-                  Combine::nearest);
+  return scene_of({sphere(0.018, {-4e-4, 0.0}), sphere(0.018, {4e-4, 0.0})}, {64, 64}, extent / 64.0, Combine::nearest);
 }
-Scene two_spheres_summed(double extent) {
-  return scene_of({sphere(0.036), sphere(0.036)}, {64, 64}, extent / 64.0);
-}
+Scene two_spheres_summed(double extent) { return scene_of({sphere(0.036), sphere(0.036)}, {64, 64}, extent / 64.0); }
 
 /// Two long bodies that add up to one with a contact some six times as long as wide, on a grid that is too
 /// short for it and wide enough.
@@ -104,16 +100,10 @@ std::vector<Body> bodies() {
   return {
       {"sphere", {sphere(0.018)}, sum, 3e-5},
       {"off_centre", {sphere(0.018, {1.3e-4, 2.1e-4})}, sum, 3e-5},
-      {"turned_ellipse",
-       {{.shape = Shape::ellipsoid, .radius_1 = 0.018, .radius_2 = 0.0063, .angle = 0.5}},
-       sum,
-       3e-5},
+      {"turned_ellipse", {{.shape = Shape::ellipsoid, .radius_1 = 0.018, .radius_2 = 0.0063, .angle = 0.5}}, sum, 3e-5},
       {"cone", {{.shape = Shape::cone, .slope = 0.02}}, sum, 3e-5},
       {"power", {{.shape = Shape::power, .exponent = 4.0, .coefficient = 3e7}}, sum, 4e-5},
-      {"rounded_punch",
-       {{.shape = Shape::rounded_punch, .flat_radius = 4e-4, .corner_radius = 5e-3}},
-       sum,
-       3e-5},
+      {"rounded_punch", {{.shape = Shape::rounded_punch, .flat_radius = 4e-4, .corner_radius = 5e-3}}, sum, 3e-5},
       {"flat_punch", {flat_punch(5e-4)}, sum, 3e-5},
       {"annulus", {flat_punch(5e-4, 3e-4, {1e-4, 0.0})}, sum, 3e-5},
       {"summed_spheres", {sphere(0.036), sphere(0.036, {2e-4, 1e-4})}, sum, 3e-5},
@@ -132,9 +122,7 @@ class ShrinkingGrid : public testing::TestWithParam<Body> {};
 TEST_P(ShrinkingGrid, HoldsTheContactOrIsRefused) {
   const Body& body = GetParam();
   constexpr Index kGenerous = 80;
-  const auto on = [&](Index n1, Index n2) {
-    return scene_of(body.surfaces, {n1, n2}, body.cell_size, body.combine);
-  };
+  const auto on = [&](Index n1, Index n2) { return scene_of(body.surfaces, {n1, n2}, body.cell_size, body.combine); };
   const ModelSolution generous = solve_in_model_units(on(kGenerous, kGenerous));
   ASSERT_EQ(generous.status, Status::converged) << generous.message;
   const Grid& grid = generous.model.grid;
@@ -188,8 +176,7 @@ TEST(GridEdge, MayBeTheBodysWhereTheSceneSaysSo) {
   for (auto [scene, extent, why] :
        {std::tuple{two_spheres_side_by_side(1.1e-3), R"(["0.0011 m", "0.0011 m"])",
                    "beyond the grid's edge under 1000 N"},
-        {scene_of({roughness()}, {32, 32}, 2.5e-5), R"(["0.0008 m", "0.0008 m"])",
-         "upper.ends_at_grid_edge = true"},
+        {scene_of({roughness()}, {32, 32}, 2.5e-5), R"(["0.0008 m", "0.0008 m"])", "upper.ends_at_grid_edge = true"},
         {one, R"(["0.00064 m", "0.00064 m"])", "larger than the contact"}}) {
     EXPECT_THAT(refusal(scene), says("grid.extent = " + std::string(extent), why));
     scene.ends_at_grid_edge = true;
@@ -248,8 +235,7 @@ TEST_F(SceneFile, OfAMappedSphereHoldsTheContactOrIsRefused) {
   // 0.978 mm of contact over 30 um a cell.
   EXPECT_NEAR(solve_in_model_units(mapped_sphere(34)).twist_angle / generous.twist_angle, 1.0, 1e-6);
   EXPECT_THAT(refusal(mapped_sphere(32)), says("grid.extent", "heights.csv", "outermost"));
-  EXPECT_EQ(solve_in_model_units(mapped_sphere(16, {"upper.ends_at_grid_edge=true"})).status,
-            Status::converged);
+  EXPECT_EQ(solve_in_model_units(mapped_sphere(16, {"upper.ends_at_grid_edge=true"})).status, Status::converged);
 }
 
 TEST_F(SceneFile, TheEdgeOfAPressureFileHasToBeTheBodys) {
@@ -258,11 +244,10 @@ TEST_F(SceneFile, TheEdgeOfAPressureFileHasToBeTheBodys) {
       "000125,1e9\n";
   const std::string at_edge = inside + "0.000375,0.000125,1e9\n-0.000375,-0.000125,1e9\n";
   EXPECT_EQ(refusal(pressed(inside)), "");
-  EXPECT_THAT(refusal(pressed(at_edge)),
-              says(R"(grid.extent = ["0.001 m", "0.001 m"])", "p.csv", "outermost"));
+  EXPECT_THAT(refusal(pressed(at_edge)), says(R"(grid.extent = ["0.001 m", "0.001 m"])", "p.csv", "outermost"));
   EXPECT_EQ(refusal(pressed(at_edge, {"upper.ends_at_grid_edge=true"})), "");
-  for (const char* one : {"0.000375,0.000125,1e9\n", "-0.000375,0.000125,1e9\n", "0.000125,0.000375,1e9\n",
-                          "0.000125,-0.000375,1e9\n"}) {
+  for (const char* one :
+       {"0.000375,0.000125,1e9\n", "-0.000375,0.000125,1e9\n", "0.000125,0.000375,1e9\n", "0.000125,-0.000375,1e9\n"}) {
     EXPECT_THAT(refusal(pressed(inside + one)), HasSubstr("outermost")) << one;
   }
 }

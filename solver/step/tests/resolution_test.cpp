@@ -23,8 +23,7 @@ LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio, doub
   return loads;
 }
 
-/// The resolution of tractions that reach half of the bound where the contact sticks, and all of it
-/// elsewhere.
+/// The resolution of tractions that reach half of the bound where the contact sticks, and all of it elsewhere.
 Resolution resolution_of(const Grid& grid, const LoadStep& loads, const ArrayXd& stick) {
   const ArrayXd& bound = loads.problem.friction_bound;
   TangentialSolution tangential;
@@ -51,13 +50,11 @@ TEST(Resolution, OfAStripHasBothAxesInTheMean) {
   for (const auto& [n1, n2] : {std::pair{40, 20}, {20, 40}}) {
     const Grid grid{n1 + 4, n2 + 6, 1.0, 1.0};
     LoadStep loads{};
-    loads.problem.friction_bound =
-        (cell_x1(grid).abs() < 0.5 * n1 && cell_x2(grid).abs() < 0.5 * n2).cast<double>();
+    loads.problem.friction_bound = (cell_x1(grid).abs() < 0.5 * n1 && cell_x2(grid).abs() < 0.5 * n2).cast<double>();
     loads.limit.factor = INFINITY;
     const Resolution found = resolution_of(grid, loads, loads.problem.friction_bound);
     const CountedArea area = counted_area(grid, loads.problem.friction_bound);
-    EXPECT_NEAR(found.step, 0.26 * cell * cell + 0.2 * cell + 1.5 * area.uncertainty / area.counted, 1e-12)
-        << n1;
+    EXPECT_NEAR(found.step, 0.26 * cell * cell + 0.2 * cell + 1.5 * area.uncertainty / area.counted, 1e-12) << n1;
     // Half of a constant bound hides a ring of pi^2/16 of a quarter of a cell along an outline of all sides.
     const double outline = 0.25 * std::numbers::pi * 2.0 * (n1 + n2);
     EXPECT_NEAR(found.stick_area, std::pow(std::numbers::pi / 8.0, 2) * outline, 1e-9) << n1;

@@ -12,10 +12,9 @@ namespace {
 /// A force moves it, and nothing turns it.
 TEST(OneCell, MovesByItsOwnCoefficient) {
   constexpr double kSide = 2.9e-3;  // a third of it is hardly smaller than the contact
-  const Solution solution =
-      solve(read_scene_text(kShortScene, "pushed.toml",
-                            {"grid.cells=[3, 3]", fmt::format("grid.extent=[{0}, {0}]", kSide),
-                             "load.moment_ratio=0", "load.force=[30, -10]"}));
+  const Solution solution = solve(read_scene_text(kShortScene, "pushed.toml",
+                                                  {"grid.cells=[3, 3]", fmt::format("grid.extent=[{0}, {0}]", kSide),
+                                                   "load.moment_ratio=0", "load.force=[30, -10]"}));
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ(solution.contact_cells, 1);
   const HalfSpace steel{0.5 * paper::kYoungModulus / (1.0 + paper::kPoissonRatio), paper::kPoissonRatio};

@@ -30,9 +30,7 @@ Tensor random_rotation(std::mt19937_64& random) {
   return Eigen::Quaterniond(any.normalized()).toRotationMatrix();
 }
 
-Eigen::Vector3d principal(const Tensor& stress) {
-  return stress.selfadjointView<Eigen::Lower>().eigenvalues();
-}
+Eigen::Vector3d principal(const Tensor& stress) { return stress.selfadjointView<Eigen::Lower>().eigenvalues(); }
 
 TEST(Fatigue, ARepeatedStateHasNoAmplitude) {
   std::mt19937_64 random(2);
@@ -96,8 +94,7 @@ TEST(Fatigue, FindleyHasTheClosedFormsOfAxialLoadingAndTorsion) {
     const Tensor turned = random_rotation(random);
     const Tensor half = turned.col(0) * turned.col(1).transpose();
     const Tensor torsion = amplitude * (half + half.transpose());
-    EXPECT_NEAR(findley(std::vector<Tensor>{torsion, -torsion}, k).value, amplitude * std::sqrt(1.0 + k * k),
-                3e-5);
+    EXPECT_NEAR(findley(std::vector<Tensor>{torsion, -torsion}, k).value, amplitude * std::sqrt(1.0 + k * k), 3e-5);
   }
 }
 

@@ -70,12 +70,8 @@ std::array<Tensor, kTractions> cell_stress(double x1, double x2, double depth, c
 constexpr Grid kCell{1, 1, 0.8, 1.3};
 
 /// Points inside and outside the cell's outline, on all sides.
-const std::array<std::array<double, 3>, 6> kPoints{{{0.1, -0.2, 0.5},
-                                                    {1.3, 0.4, 0.3},
-                                                    {-0.7, 1.9, 1.1},
-                                                    {-2.5, -3.1, 0.7},
-                                                    {0.9, -1.2, 4.0},
-                                                    {0.4, 0.65, 0.6}}};
+const std::array<std::array<double, 3>, 6> kPoints{
+    {{0.1, -0.2, 0.5}, {1.3, 0.4, 0.3}, {-0.7, 1.9, 1.1}, {-2.5, -3.1, 0.7}, {0.9, -1.2, 4.0}, {0.4, 0.65, 0.6}}};
 
 TEST(CellStress, IsThePointSolutionIntegratedOverTheCell) {
   const std::unique_ptr<gsl_integration_glfixed_table, void (*)(gsl_integration_glfixed_table*)> gauss(
@@ -87,10 +83,8 @@ TEST(CellStress, IsThePointSolutionIntegratedOverTheCell) {
       Tensor sum{};
       for (std::size_t node = 0; node < 128 * 128; ++node) {
         double u, v, weight_u, weight_v;
-        gsl_integration_glfixed_point(-0.5 * kCell.h1, 0.5 * kCell.h1, node / 128, &u, &weight_u,
-                                      gauss.get());
-        gsl_integration_glfixed_point(-0.5 * kCell.h2, 0.5 * kCell.h2, node % 128, &v, &weight_v,
-                                      gauss.get());
+        gsl_integration_glfixed_point(-0.5 * kCell.h1, 0.5 * kCell.h1, node / 128, &u, &weight_u, gauss.get());
+        gsl_integration_glfixed_point(-0.5 * kCell.h2, 0.5 * kCell.h2, node % 128, &v, &weight_v, gauss.get());
         const Tensor point = point_solution(b, x - u, y - v, z, nu);
         for (std::size_t a = 0; a < kStresses; ++a)
           sum[a] += 0.5 * std::numbers::inv_pi * weight_u * weight_v * point[a];

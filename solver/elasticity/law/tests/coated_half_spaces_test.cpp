@@ -29,14 +29,10 @@ constexpr HalfSpace kHard{5.0, 0.2};
 /// Layers much softer and harder than the base, incompressible, of negative Poisson's ratio, on a rigid base.
 std::vector<CoatedBody> hostile(double thickness) {
   const HalfSpace rigid = kRigidBody.surface;
-  return {{{5.0, 0.3}, thickness, {2.0, 0.2}},
-          {{0.1, 0.5}, thickness, {2.0, 0.5}},
-          {kSoft, thickness, rigid},
-          {{1.0, 0.5}, thickness, rigid},
-          {{1e4, 0.0}, thickness, {1.0, 0.2}},
-          {{1.0, -0.9}, thickness, {1e4, -0.9}},
-          {{1.001, 0.1}, thickness, {1.0, 0.5}},
-          {{20.0, 0.1}, thickness, kSoft}};
+  return {
+      {{5.0, 0.3}, thickness, {2.0, 0.2}},   {{0.1, 0.5}, thickness, {2.0, 0.5}}, {kSoft, thickness, rigid},
+      {{1.0, 0.5}, thickness, rigid},        {{1e4, 0.0}, thickness, {1.0, 0.2}}, {{1.0, -0.9}, thickness, {1e4, -0.9}},
+      {{1.001, 0.1}, thickness, {1.0, 0.5}}, {{20.0, 0.1}, thickness, kSoft}};
 }
 
 using Real = long double;
@@ -56,9 +52,8 @@ Eigen::Matrix<Real, 4, 1> wave(const HalfSpace& body, Real s, bool second, Real 
   return Eigen::Matrix<Real, 4, 1>(u * compliance, w * compliance, -(du + w), -(volume + 2.0L * dw)) * psi;
 }
 
-/// In extended precision: amplitudes of four waves of the layer and two of the base follow from the surface
-/// and the interface. Shear waves: the base's compliance, carried through the layer as along a transmission
-/// line.
+/// In extended precision: amplitudes of four waves of the layer and two of the base follow from the surface and the
+/// interface. Shear waves: the base's compliance, carried through the layer as along a transmission line.
 WaveCompliance reference(const CoatedBody& body, Real wave_number) {
   const Real x = wave_number * body.thickness;
   Matrix conditions = Matrix::Zero(6, 6);
@@ -178,16 +173,15 @@ std::array<double, 6> added_by_base(const CoatedBody& body, const Grid& cell, Ce
         const double n2 = std::sin(2.0 * std::numbers::pi * j / directions);
         const double a = k * n1 * cell.h1;
         const double b = k * n2 * cell.h2;
-        const double weight = cell.cell_area() * sinc(0.5 * a) * sinc(0.5 * b) * sharpening(traction, a, b) *
-                              width * rule.weight[i] / body.thickness / directions / 2.0 / std::numbers::pi;
+        const double weight = cell.cell_area() * sinc(0.5 * a) * sinc(0.5 * b) * sharpening(traction, a, b) * width *
+                              rule.weight[i] / body.thickness / directions / 2.0 / std::numbers::pi;
         const double even = weight * std::cos(k * (n1 * x + n2 * y));
         const double odd = -weight * std::sin(k * (n1 * x + n2 * y));
         const double across = even * (c.across - layer.across);
         const double along = even * (c.along - layer.along);
-        const std::array wave{
-            across * n2 * n2 + along * n1 * n1,       (along - across) * n1 * n2,
-            across * n1 * n1 + along * n2 * n2,       odd * n1 * (c.coupling - layer.coupling),
-            odd * n2 * (c.coupling - layer.coupling), even * (c.normal - layer.normal)};
+        const std::array wave{across * n2 * n2 + along * n1 * n1,       (along - across) * n1 * n2,
+                              across * n1 * n1 + along * n2 * n2,       odd * n1 * (c.coupling - layer.coupling),
+                              odd * n2 * (c.coupling - layer.coupling), even * (c.normal - layer.normal)};
         for (std::size_t part = 0; part < sum.size(); ++part) sum[part] += wave[part];
       }
     }

@@ -82,9 +82,7 @@ Quad corner_difference(const Function& f, Quad x, Quad y, Quad h1, Quad h2) {
 /// d2/dxdy of it is x^2/rho^3.
 Quad y_asinh(Quad x, Quad y) { return y == 0 ? 0 : y * asinhq(x / fabsq(y)); }
 /// d2/dxdy of it is x/rho^2.
-Quad log_arctan(Quad x, Quad y) {
-  return (y == 0 ? 0 : y * logq(x * x + y * y) / 2) + (x == 0 ? 0 : x * atanq(y / x));
-}
+Quad log_arctan(Quad x, Quad y) { return (y == 0 ? 0 : y * logq(x * x + y * y) / 2) + (x == 0 ? 0 : x * atanq(y / x)); }
 
 std::array<double, 5> exact_integrals(double x, double y, double h1, double h2) {
   const auto of = [&](const auto& f) { return static_cast<double>(corner_difference(f, x, y, h1, h2)); };
@@ -127,8 +125,7 @@ TEST_P(FarCells, AgreeWithQuadruplePrecisionUpTo8192Cells) {
   const auto offsets = sweep_offsets();
   for (const Index k1 : offsets) {
     for (const Index k2 : offsets) {
-      const double error =
-          worst_error(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
+      const double error = worst_error(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
       ASSERT_LE(error, kPromised) << "cell (" << k1 << ", " << k2 << ")";
     }
   }
@@ -147,8 +144,7 @@ TEST(Influence, ParityIsThatOfThePointLoads) {
   EXPECT_EQ(parity(Component::k12).x2, -1);
 }
 
-void expect_coefficients(const ElasticPair& pair, double factor, const ElasticPair& reference,
-                         double coupling_factor) {
+void expect_coefficients(const ElasticPair& pair, double factor, const ElasticPair& reference, double coupling_factor) {
   for (const Component component : kAllComponents) {
     const bool coupling = component == Component::k13 || component == Component::k23;
     const auto computed = HalfSpaces(pair).influence_coefficients(component, {6, 5, 1.0, 1.3});
@@ -181,13 +177,11 @@ TEST(Influence, OfIncompressibleOrProportionateBodiesHasNoCoupling) {
 TEST(Influence, OfAFarCellIsThatOfAPointLoad) {
   const ElasticPair both = elastic_pair(kLower, kUpper);
   for (const Component component : kAllComponents) {
-    EXPECT_NEAR(coefficient(component, both, 1.0, 1.0, 200, 100) / pair_point_load(component, 200.0, 100.0),
-                1.0, 1e-4);
+    EXPECT_NEAR(coefficient(component, both, 1.0, 1.0, 200, 100) / pair_point_load(component, 200.0, 100.0), 1.0, 1e-4);
     for (const double poisson_of_rigid : {0.0, 0.2, 0.5}) {
       const ElasticPair one = elastic_pair(kLower, {kRigid, poisson_of_rigid});
-      EXPECT_NEAR(
-          coefficient(component, one, 1.0, 1.0, 200, 100) / point_load(component, kLower, 200.0, 100.0), 1.0,
-          1e-4);
+      EXPECT_NEAR(coefficient(component, one, 1.0, 1.0, 200, 100) / point_load(component, kLower, 200.0, 100.0), 1.0,
+                  1e-4);
     }
   }
 }
@@ -195,8 +189,7 @@ TEST(Influence, OfAFarCellIsThatOfAPointLoad) {
 TEST(Influence, EffectiveModuliAreThoseOfTheLiterature) {
   const ElasticPair pair = elastic_pair(kLower, kUpper);
   const auto plane_strain = [](const HalfSpace& body) {  // (1 - nu^2)/E with E = 2 G (1 + nu)
-    return (1.0 - body.poisson_ratio * body.poisson_ratio) /
-           (2.0 * body.shear_modulus * (1.0 + body.poisson_ratio));
+    return (1.0 - body.poisson_ratio * body.poisson_ratio) / (2.0 * body.shear_modulus * (1.0 + body.poisson_ratio));
   };
   EXPECT_DOUBLE_EQ(pair.effective_modulus(), 1.0 / (plane_strain(kLower) + plane_strain(kUpper)));
   EXPECT_DOUBLE_EQ(pair.shear_modulus(), 1.0 / (1.0 / kLower.shear_modulus + 1.0 / kUpper.shear_modulus));
@@ -218,21 +211,14 @@ TEST(InfluenceTables, HoldTheIntegralsOfEachOffsetOnAnyNumberOfThreads) {
   const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
   const HalfSpaces law(pair);
   for (const double aspect : {1.0, 0.3}) {
-    for (const auto& [m1, m2] : {std::pair<Index, Index>{1, 1},
-                                 {3, 21},
-                                 {21, 3},
-                                 {17, 17},
-                                 {24, 24},
-                                 {77, 21},
-                                 {61, 61},
-                                 {93, 42}}) {
+    for (const auto& [m1, m2] :
+         {std::pair<Index, Index>{1, 1}, {3, 21}, {21, 3}, {17, 17}, {24, 24}, {77, 21}, {61, 61}, {93, 42}}) {
       const Grid offsets{m1, m2, 1.0, aspect};
       const auto tables = law.influence_tables(kAllComponents, offsets, 1);
       ASSERT_EQ(tables.size(), kAllComponents.size());
       for (Index k = 0; k < m1 * m2; ++k) {
         const auto expected = composed(
-            pair,
-            cell_integrals(static_cast<double>(k / m2), static_cast<double>(k % m2) * aspect, 1.0, aspect));
+            pair, cell_integrals(static_cast<double>(k / m2), static_cast<double>(k % m2) * aspect, 1.0, aspect));
         for (std::size_t i = 0; i < tables.size(); ++i) {
           ASSERT_NEAR(tables[i][static_cast<std::size_t>(k)], expected[i], kPromised * std::abs(expected[i]));
         }

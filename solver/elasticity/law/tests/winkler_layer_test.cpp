@@ -28,8 +28,7 @@ double added(const BlockKernel& kernel) {
 
 TEST(WinklerLayer, AddsItsComplianceToTheDiagonalOfTheMatrix) {
   const Grid grid{5, 4, 1.0, 0.6};
-  for (const BlockKernel& kernel :
-       {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
+  for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
     const DenseMatrix with(grid, kernel, layered());
     Eigen::MatrixXd expected = DenseMatrix(grid, kernel, *bodies()).matrix();
     expected.diagonal().array() += added(kernel);
@@ -40,13 +39,11 @@ TEST(WinklerLayer, AddsItsComplianceToTheDiagonalOfTheMatrix) {
 }
 
 TEST(WinklerLayer, HasTheSameComplianceForSmoothCellTractions) {
-  const auto smooth =
-      std::make_shared<HalfSpaces>(elastic_pair({1.0, 0.3}, {2.5, 0.1}), CellTraction::smooth);
+  const auto smooth = std::make_shared<HalfSpaces>(elastic_pair({1.0, 0.3}, {2.5, 0.1}), CellTraction::smooth);
   const Grid offsets{4, 4, 1.0, 1.0};
   auto expected = smooth->influence_coefficients(Component::k33, offsets);
   expected.front() += kNormal;
-  EXPECT_EQ(WinklerLayer(smooth, kNormal, kTangential).influence_coefficients(Component::k33, offsets),
-            expected);
+  EXPECT_EQ(WinklerLayer(smooth, kNormal, kTangential).influence_coefficients(Component::k33, offsets), expected);
 }
 
 const std::vector<PlaneWave> kWaves{
@@ -60,8 +57,7 @@ TEST(WinklerLayer, AddsItsComplianceToTheSymbol) {
     layer.inverse_symbols(true, 1.0, 1.0, kWaves, with);
     bodies()->inverse_symbols(true, 1.0, 1.0, kWaves, without);
     for (std::size_t i = 0; i < kWaves.size(); ++i) {
-      const Eigen::Matrix2d sum =
-          matrix(without[i]).inverse() + softer * kTangential * Eigen::Matrix2d::Identity();
+      const Eigen::Matrix2d sum = matrix(without[i]).inverse() + softer * kTangential * Eigen::Matrix2d::Identity();
       EXPECT_TRUE((matrix(with[i]) * sum).isApprox(Eigen::Matrix2d::Identity(), 1e-12)) << i;
     }
     layer.inverse_symbols(false, 1.0, 1.0, kWaves, with);
@@ -81,11 +77,10 @@ TEST(WinklerLayer, AddsItsDisplacementHoweverTractionsAreSummed) {
     Grid grid;
     bool diagonal;
   };
-  for (const auto& [kind, grid, diagonal] : {Case{OperatorKind::dcfft, {13, 9, 1.0, 0.7}, false},
-                                             Case{OperatorKind::direct, {13, 9, 1.0, 0.7}, false},
-                                             Case{OperatorKind::dense, {6, 5, 1.0, 0.7}, false},
-                                             Case{OperatorKind::dcfft, {13, 9, 1.0, 0.7, true}, false},
-                                             Case{OperatorKind::dcfft, {11, 11, 0.5, 0.5, true}, true}}) {
+  for (const auto& [kind, grid, diagonal] :
+       {Case{OperatorKind::dcfft, {13, 9, 1.0, 0.7}, false}, Case{OperatorKind::direct, {13, 9, 1.0, 0.7}, false},
+        Case{OperatorKind::dense, {6, 5, 1.0, 0.7}, false}, Case{OperatorKind::dcfft, {13, 9, 1.0, 0.7, true}, false},
+        Case{OperatorKind::dcfft, {11, 11, 0.5, 0.5, true}, true}}) {
     for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel()}) {
       const OperatorOptions options{.threads = 1, .diagonal = diagonal && kernel.inputs == 2};
       ArrayXd q = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 1);
