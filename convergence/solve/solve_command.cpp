@@ -85,7 +85,8 @@ void add_file_options(CLI::App& command, SolveWords& words) {
       .add_option("--checkpoint", words.request.checkpoint.file,
                   "write checkpoints of a load history to this HDF5 file, after the first step and then as "
                   "often as takes 1 % of the time")
-      ->excludes(command.get_option("--accuracy"));
+      ->excludes(command.get_option("--accuracy"))
+      ->excludes(command.get_option("--proven"));
   command
       .add_flag("--resume", words.request.checkpoint.resume,
                 "continue from the --checkpoint file if it exists; the result is the same as without a break")
