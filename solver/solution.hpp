@@ -132,8 +132,9 @@ struct SolutionFields {
   /// elsewhere it may be zero.
   /// Where several processes share the grid, each may hold its own rows only.
   Eigen::ArrayXd elastic_displacement;
-  Eigen::ArrayXd slip;   ///< m, (s1, s2) in this step
-  Eigen::ArrayXd stick;  ///< 1 where the bodies stick, else 0
+  Eigen::ArrayXd slip;              ///< m, (s1, s2) in this step
+  Eigen::ArrayXd stick;             ///< 1 where the bodies stick, else 0
+  Eigen::ArrayXd gap_density = {};  ///< J/m^2, see ContinuumGap; empty: it was not asked for
 };
 
 /// The numerical answer at the end of a step, in SI units like the scene.

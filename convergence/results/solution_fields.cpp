@@ -38,6 +38,7 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
     const double s2 = solution.slip[cell + cells];
     return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
+  if (solution.gap_density.size() > 0) add_kept("gap_density", solution.gap_density, 0);
   // Worked out for the first of their columns that is asked for.
   const auto sharp =
       [&solution, kept = std::make_shared<std::optional<std::vector<SharpenedCell>>>() ]() -> const auto& {

@@ -66,7 +66,7 @@ class Imposed {
 
   /// V lies between these, J.
   std::pair<double, double> potential(const Solution& solution, const ContinuumGap& found) const {
-    const auto& [gap, energy, quadrature_error] = found;
+    const auto& [gap, energy, quadrature_error, density] = found;
     double work = 0.0;
     if (turns_ && motion_) work += solution.twist_angle * solution.moment;
     if (scene_.steps.front().displacement)
@@ -133,9 +133,10 @@ void add_pressure(ContinuumRecord& record, const Scene& scene, const Solution& s
 
 }  // namespace
 
-ContinuumRecord continuum_record(const Scene& scene, const Solution& solution) try {
+ContinuumRecord continuum_record(const Scene& scene, const Solution& solution, Eigen::ArrayXd* density) try {
   const auto cache = std::make_shared<solver::SolveCache>();
-  const ContinuumGap found = solver::continuum_gap(scene, solution, cache);
+  ContinuumGap found = solver::continuum_gap(scene, solution, cache);
+  if (density != nullptr) *density = std::move(found.density);
   const std::string broken = "the fields are not finite";
   ContinuumRecord record{.gap = number_or(found.gap, broken),
                          .energy = number_or(found.energy, broken),
@@ -160,7 +161,7 @@ ProvenAnswer solve_until_proven(Scene scene, double width, const std::function<S
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     try {
       SolvedScene solved = solve(scene);
-      solved.record.end.certificate.continuum = continuum_record(scene, solved.solution);
+      solved.record.end.certificate.continuum = continuum_record(scene, solved.solution, &solved.solution.gap_density);
       answer.solved = std::move(solved);
       answer.scene = scene;
     } catch (const solver::InputError& refused) {

@@ -16,7 +16,9 @@ namespace slipstick::convergence {
 /// J(q) - G <= J*(M) <= J(q) for tractions q that carry M, differences to the moments M + d and M - d bound
 /// it: (J_low(M) - J_up(M - d))/d <= phi(M) <= (J_up(M + d) - J_low(M))/d. For a force, an imposed twist or
 /// an imposed displacement another potential takes the place of J.
-ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solution& solution);
+/// density: gets that of the gap.
+ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solution& solution,
+                                 Eigen::ArrayXd* density = nullptr);
 
 /// Solves with more cells until that interval is narrow enough.
 struct ProvenAnswer {

@@ -193,7 +193,9 @@ SolveRecord answer_on_grid(const SolveRequest& request, std::ostream& text, Json
   if (request.stresses.fatigue.any()) keep_last_cycle(options, request.scene.cycles, cycle);
   SolvedScene solved = request.checkpoint.file.empty() ? solve_or_keep_steps(request.scene, options, result)
                                                        : solve_with_checkpoint(request, result);
-  if (request.continuum) solved.record.end.certificate.continuum = continuum_record(request.scene, solved.solution);
+  if (request.continuum)
+    solved.record.end.certificate.continuum =
+        continuum_record(request.scene, solved.solution, &solved.solution.gap_density);
   write_solved(request, solved, cycle, text, result);
   return std::move(solved.record);
 }

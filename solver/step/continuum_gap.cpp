@@ -155,8 +155,11 @@ ContinuumGap continuum_gap(const Scene& scene, const Solution& solution, std::sh
           ? least_bound(fine, s, density, near_stick(fine, grid, part.restricted(solution.stick)), compliance)
           : estimate(fine, density, kThirdDegree);
   const double images = part.quadrant() ? 4.0 : 1.0;
-  return {gap.value / energy.value, images * energy.value * unit.moment_unit(),
-          (gap.error + energy.error) / energy.value};
+  const ArrayXd means = restrict_to(grid, fine, density) * (unit.stress_unit * unit.length_unit);
+  return {.gap = gap.value / energy.value,
+          .energy = images * energy.value * unit.moment_unit(),
+          .quadrature_error = (gap.error + energy.error) / energy.value,
+          .density = part.expanded(means, normal_symmetry())};
 }
 
 PressureGap pressure_gap(const Scene& scene, const Solution& solution) {

@@ -20,6 +20,7 @@ struct ContinuumGap {
   double gap;               ///< the bound over `energy`
   double energy;            ///< J, q.Kq/2 with displacements integrated over the cells
   double quadrature_error;  ///< of gap and energy, relative to `energy`: an estimate, by other rules
+  Eigen::ArrayXd density;   ///< J/m^2: the mean of q.s + f |s| over each cell of the solution's grid
 };
 
 /// By s at 3 x 3 points of each cell: one application of the operator on a grid whose cells are a third as

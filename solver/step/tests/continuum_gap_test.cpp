@@ -147,6 +147,17 @@ TEST(ContinuumGap, TakesTheTractionsAsConstantInCells) {
   EXPECT_EQ(continuum_gap(scene, solution).gap, constant.gap);
 }
 
+// Without a part for the dual norm the gap is the integral of its density, which only parts of the contact have.
+TEST(ContinuumGap, IsTheIntegralOfItsDensityWhereItHasNoOtherPart) {
+  Scene scene = paper_scene(32, 0.6);
+  scene.ends_at_grid_edge = true;
+  const Solution solution = solve(scene);
+  const ContinuumGap found = continuum_gap(scene, solution);
+  EXPECT_NEAR(found.density.sum() * solution.grid.cell_area(), found.gap * found.energy, 1e-12 * found.energy);
+  EXPECT_GE(found.density.minCoeff(), -1e-6 * found.density.maxCoeff());
+  EXPECT_EQ((solution.pressure == 0.0).select(found.density, 0.0).abs().maxCoeff(), 0.0);
+}
+
 TEST(ContinuumGap, IsRefusedForHistoriesAndIsNaNForNaN) {
   Scene scene = paper_scene(16, 0.5);
   Solution solution = solve(scene);
