@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
@@ -74,6 +75,28 @@ TEST(ContinuumInterval, HoldsTheTwistUnderAnImposedDisplacement) {
   scene.steps.front().torsion = Moment{0.8 * paper::kMomentLimit};
   scene.steps.front().displacement = {0.4e-6, 0.0};
   expect_held(scene, "displacement");
+}
+
+// A stated uncertainty that does not reach from the twist into the interval is too small for certain.
+TEST(ContinuumInterval, IsReachedByTheStatedUncertainty) {
+  std::mt19937 random(12);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int known = 0;
+  for (int k = 0; k < 12; ++k) {
+    const double radius = between(0.005, 0.03);
+    Scene scene =
+        ellipsoid_scene(2 * static_cast<Index>(between(8, 20)), radius * between(1, 3), radius, between(0.05, 0.9));
+    scene.lower.poisson_ratio = scene.upper.poisson_ratio = between(0.0, 0.49);
+    const Solution solution = solve(scene);
+    const ContinuumRecord found = continuum_record(scene, solution);
+    if (std::isnan(found.low + found.high)) continue;
+    ++known;
+    EXPECT_LE(found.low - solution.twist_angle, solution.resolution.absolute) << k;
+    EXPECT_LE(solution.twist_angle - found.high, solution.resolution.absolute) << k;
+  }
+  EXPECT_GT(known, 8);
 }
 
 TEST(ContinuumInterval, IsMirroredWithTheMoment) {
