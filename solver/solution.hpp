@@ -134,7 +134,7 @@ struct SolutionFields {
   Eigen::ArrayXd elastic_displacement;
   Eigen::ArrayXd slip;              ///< m, (s1, s2) in this step
   Eigen::ArrayXd stick;             ///< 1 where the bodies stick, else 0
-  Eigen::ArrayXd gap_density = {};  ///< J/m^2, see ContinuumGap; empty: it was not asked for
+  Eigen::ArrayXd gap_density = {};  ///< J/m^2, see ContinuumGap; empty: not computed
 };
 
 /// The numerical answer at the end of a step, in SI units like the scene.

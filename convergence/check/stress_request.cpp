@@ -25,7 +25,7 @@ using Parts = std::vector<solver::PointStresses>;
 
 constexpr std::array<const char*, solver::kStresses> kComponents{"s11", "s22", "s33", "s12", "s13", "s23"};
 constexpr std::size_t kMaxStressRows = 100'000;
-/// Of sums over a solution, points times cells in contact: a minute of CPU.
+/// Most points times cells in contact of a sum over a solution: a minute of CPU.
 constexpr double kMaxTerms = 3e8;
 /// Positions beyond this many contact radii, in the median, are taken for another unit.
 constexpr double kFarAway = 200.0;

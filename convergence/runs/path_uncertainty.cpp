@@ -22,7 +22,7 @@ using Eigen::ArrayXXd;
 /// Cells along a side of the coarse grid, in the geometric mean: on 16 to 64 cells a path's error differs by
 /// up to a quarter.
 constexpr double kPathCells = 16.0;
-/// Those of a correction, at most; its second mesh has half as many.
+/// Most cells along a side of a correction; its second mesh has half as many.
 constexpr double kCorrectionCells = 96.0;
 /// The uncertainty of a correction c by meshes of n and n/2 cells, whose differences are d apart, where the
 /// slip ring is a part s of the contact's radius: kOfChange c/(n s) + kOfMeshes d + kOfCells/n^2, and the

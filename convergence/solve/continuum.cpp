@@ -101,7 +101,7 @@ std::pair<Number, Number> interval(const Imposed& imposed, const Solution& solut
       return {.why_missing = refused.what()};
     }
   };
-  // The best distance is sqrt(2 G/V''), and V'' the change of the number over that of the value.
+  // The best distance is sqrt(2 G/V''); V'' is the change of the number over the change of the value.
   const double open = 2.0 * (at_high - at_low);
   const double number = imposed.number(solution);
   const double first = std::copysign(std::min(std::sqrt(open * here / number), std::abs(here)), here);

@@ -16,7 +16,7 @@ namespace slipstick::convergence {
 /// J(q) - G <= J*(M) <= J(q) for tractions q that carry M, differences to the moments M + d and M - d bound
 /// it: (J_low(M) - J_up(M - d))/d <= phi(M) <= (J_up(M + d) - J_low(M))/d. For a force, an imposed twist or
 /// an imposed displacement another potential takes the place of J.
-/// density: gets that of the gap.
+/// density: gets the density of the gap.
 ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solution& solution,
                                  Eigen::ArrayXd* density = nullptr);
 
@@ -24,7 +24,7 @@ ContinuumRecord continuum_record(const solver::Scene& scene, const solver::Solut
 struct ProvenAnswer {
   solver::Scene scene;  ///< with the last cells
   SolvedScene solved;   ///< with its continuum record
-  Json account;         ///< wanted, attempts, and not_reached: why the interval is wider
+  Json account;         ///< the width, the attempts, and not_reached: why the interval is wider
   std::string text;     ///< the account for a person
 };
 

@@ -32,7 +32,7 @@ ArrayXd near_means(const Elasticity& elasticity, const Grid& cells, const BlockK
   return restrict_to(cells, fine, u);
 }
 
-/// What one rule gives more than another. A constant traction on the whole plane moves all points by the
+/// The difference of two rules. A constant traction on the whole plane moves all points by the
 /// same, so the cell itself has what makes the sum of each component zero.
 ArrayXd difference(const ArrayXd& means, const ArrayXd& rule) {
   ArrayXd found = means - rule;

@@ -8,7 +8,7 @@
 
 namespace slipstick::solver {
 
-/// What a sum over the middles of the outer 8 of 3 x 3 parts of each cell misses of the integral q.Kq/2 over
+/// The part of the integral q.Kq/2 that a sum over the outer 8 of 3 x 3 parts of each cell misses, over
 /// cells with constant tractions q: displacements grow like x ln x at a cell's sides. It comes from the cell
 /// itself and from 5 x 5 cells around it, whose mean displacements are sums over 15 x 15 and 5 x 5 parts,
 /// extrapolated. The error compares sums over 9 x 9 and 3 x 3 parts.

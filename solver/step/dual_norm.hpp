@@ -7,7 +7,7 @@
 
 namespace slipstick::solver {
 
-/// A sum in place of an integral, and its estimated error.
+/// A sum over points for an integral, and its estimated error.
 struct Estimate {
   double value;
   double error;

@@ -107,7 +107,7 @@ class Stresses(CheckTest):
         self.good(SPHERE, at, PEAK * np.array([rr, rr, zz, zero, zero, zero]), within=1e-12)
 
     def test_far_away_the_stresses_are_those_of_a_point_force_and_a_point_moment(self):
-        """Boussinesq's stresses, and those of u_theta = M r/(4 pi G R^3), to the square of the contact's radius over the distance."""
+        """Boussinesq's stresses, and the stresses of u_theta = M r/(4 pi G R^3), to the square of the contact's radius over the distance."""
         moment = run("solve", *also(SPHERE, "solver.model=exact"))["moment"]
         for distance in (20.0, 80.0):
             at = AT + [0, 0, 0.2 * RADIUS]
@@ -121,7 +121,7 @@ class Stresses(CheckTest):
                 s * (2 * c - z / R**3) * x * y - 3 * z * x * y / R**5, -3 * x * z * z / R**5, -3 * y * z * z / R**5])
             turned = 3 * moment / (4 * math.pi * R**5) * np.array([2 * x * y, -2 * x * y, 0 * x, y * y - x * x, y * z, -x * z])
             self.good(SPHERE, at, force + turned, within=2 / distance**2)
-            # Under the right stresses of the pressure those of the moment show: its share falls like 1/distance.
+            # Next to the right stresses of the pressure the stresses of the moment show: its share falls like 1/distance.
             pressed = exact(at, friction=0)
             share = max(item["value"] for item in check(SPHERE, at, pressed)["judged"])
             self.good(SPHERE, at, pressed + turned, within=2 / distance**2 * share)
@@ -231,7 +231,7 @@ class Stresses(CheckTest):
         self.bad(coarse, deep, exact(deep, friction=0), cause="shear tractions is missing")
 
     def test_stresses_of_a_solve_are_read_back(self):
-        """Of a contact whose path does not matter: its right stresses are the same sum."""
+        """The path of this contact does not matter: its right stresses are the same sum."""
         scene = also(example("paper", 32), "upper.ends_at_grid_edge=true")
         file = FOLDER / "own.csv"
         run("solve", *scene, "--stresses", file, "--depths", "1.5e-4")

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// q.Kq/2 by sums over 3 x 3 parts without their middle, with what it misses.
+/// q.Kq/2 by sums over 3 x 3 parts without their middle, and the missing part.
 Estimate whole_energy(const Elasticity& elasticity, const Grid& grid, const ArrayXd& q, const BlockKernel& kernel,
                       const Symmetry& symmetry) {
   const Grid fine = divided(grid, 3);
