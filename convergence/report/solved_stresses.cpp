@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 #include "convergence/oracle/oracle.hpp"
@@ -14,11 +13,8 @@ namespace {
 
 using Tensor = std::array<double, solver::kStresses>;
 
-double largest_shear(const Tensor& s) {
-  Eigen::Matrix3d tensor;
-  tensor << s[solver::k11], s[solver::k12], s[solver::k13], s[solver::k12], s[solver::k22], s[solver::k23],
-      s[solver::k13], s[solver::k23], s[solver::k33];
-  const Eigen::Vector3d principal = tensor.selfadjointView<Eigen::Lower>().eigenvalues();
+double largest_shear(const Tensor& stress) {
+  const Eigen::Vector3d principal = solver::principal_stresses(stress);
   return 0.5 * (principal[2] - principal[0]);
 }
 

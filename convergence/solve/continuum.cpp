@@ -175,8 +175,9 @@ ProvenAnswer solve_until_proven(Scene scene, double width, const std::function<S
     Json made{{"cells", scene.grid.cells}};
     set_number(made, "width", reached);
     answer.account["attempts"].push_back(std::move(made));
-    answer.text += text_line("proven", fmt::format("{} x {} cells: an interval of {}", scene.grid.cells[0],
-                                                   scene.grid.cells[1], percent_text(reached)));
+    answer.text += text_line(
+        "proven", fmt::format("{} x {} cells: {}", scene.grid.cells[0], scene.grid.cells[1],
+                              std::isnan(reached) ? "no interval" : "an interval of " + percent_text(reached)));
     if (reached <= width) return answer;
     if (!answer.solved.record.is_converged() || std::isnan(found.gap)) {
       not_reached = std::isnan(found.gap) ? found.gap.why_missing : "the solve did not converge";

@@ -31,37 +31,55 @@ std::string with(std::string name, std::string_view mark, const std::string& wor
   return at == std::string::npos ? name : name.replace(at, mark.size(), word);
 }
 
-/// A depth in m, with its unit, or over the radius of a Hertzian contact, as 0.4a.
-double depth_of(const std::string& word, const solver::Scene& scene) {
-  std::optional<double> depth = solver::parse_number(word, 0);
-  if (!depth && word.ends_with('a')) {
-    depth = solver::parse_number(std::string_view(word).substr(0, word.size() - 1), 0);
-    const solver::Model model = solver::make_model(scene);
-    if (depth && !model.hertz)
-      throw InputError("--depths " + word, "allowed: lengths; the contact's radius is not known before the solve");
-    if (depth) *depth *= std::sqrt(model.hertz->semi_axis_1 * model.hertz->semi_axis_2) * model.length_unit;
-  }
-  if (!depth) depth = solver::Units().read(word, "m");
-  if (!depth || !(*depth > 0.0) || !std::isfinite(*depth))
-    throw InputError("--depths " + word,
-                     "allowed: depths above zero in m, with a unit, as \"20 um\", or over a Hertzian contact's "
-                     "radius, as 0.4a; FROM..TO:N for N depths whose ratios are equal");
-  return *depth;
-}
+/// The depths of a scene, from their words.
+class DepthReader {
+ public:
+  explicit DepthReader(const solver::Scene& scene) : scene_(scene) {}
 
-/// Adds the depths of a word, FROM..TO:N or one depth.
-void read(const std::string& word, const solver::Scene& scene, std::vector<double>& depths) {
-  const auto dots = word.find("..");
-  const auto colon = word.rfind(':');
-  if (dots == std::string::npos || colon == std::string::npos || colon < dots)
-    return depths.push_back(depth_of(word, scene));
-  const auto count = solver::parse_number(word.substr(colon + 1), 0);
-  if (!count || !(*count >= 2.0 && *count <= 10000.0) || *count != std::floor(*count))
-    throw InputError("--depths " + word, "allowed: FROM..TO:N with a whole number N from 2 to 10000");
-  const double from = depth_of(word.substr(0, dots), scene);
-  const double ratio = depth_of(word.substr(dots + 2, colon - dots - 2), scene) / from;
-  for (double i = 0.0; i < *count; ++i) depths.push_back(from * std::pow(ratio, i / (*count - 1.0)));
-}
+  /// FROM..TO:N, or one depth.
+  std::vector<double> read(const std::string& word) {
+    const auto dots = word.find("..");
+    const auto colon = word.rfind(':');
+    if (dots == std::string::npos || colon == std::string::npos || colon < dots) return {depth_of(word)};
+    const auto count = solver::parse_number(word.substr(colon + 1), 0);
+    if (!count || !(*count >= 2.0 && *count <= 10000.0) || *count != std::floor(*count))
+      throw InputError("--depths " + word, "allowed: FROM..TO:N with a whole number N from 2 to 10000");
+    const double from = depth_of(word.substr(0, dots));
+    const double ratio = depth_of(word.substr(dots + 2, colon - dots - 2)) / from;
+    std::vector<double> depths;
+    for (double i = 0.0; i < *count; ++i) depths.push_back(from * std::pow(ratio, i / (*count - 1.0)));
+    return depths;
+  }
+
+ private:
+  /// In m, with its unit, or over the radius of a Hertzian contact, as 0.4a.
+  double depth_of(const std::string& word) {
+    std::optional<double> depth = solver::parse_number(word, 0);
+    if (!depth && word.ends_with('a')) {
+      depth = solver::parse_number(std::string_view(word).substr(0, word.size() - 1), 0);
+      if (depth) *depth *= contact_radius(word);
+    }
+    if (!depth) depth = solver::Units().read(word, "m");
+    if (!depth || !(*depth > 0.0) || !std::isfinite(*depth))
+      throw InputError("--depths " + word,
+                       "allowed: depths above zero in m, with a unit, as \"20 um\", or over a Hertzian contact's "
+                       "radius, as 0.4a; FROM..TO:N for N depths whose ratios are equal");
+    return *depth;
+  }
+
+  /// m; of an ellipse the radius of the circle of equal area.
+  double contact_radius(const std::string& word) {
+    if (radius_) return *radius_;
+    const solver::Model model = solver::make_model(scene_);
+    if (!model.hertz)
+      throw InputError("--depths " + word, "allowed: lengths; the contact's radius is not known before the solve");
+    radius_ = std::sqrt(model.hertz->semi_axis_1 * model.hertz->semi_axis_2) * model.length_unit;
+    return *radius_;
+  }
+
+  const solver::Scene& scene_;
+  std::optional<double> radius_;
+};
 
 }  // namespace
 
@@ -85,7 +103,11 @@ void StressFiles::read_depths(const solver::Scene& scene) {
   if (!is_volume()) solver::require_field_format(file, "--stresses");
   if (!figure.empty() && !is_volume())
     throw InputError("--stress-figure " + figure, "allowed: with a volume, --stresses FILE.vtr");
-  for (const std::string& word : depth_words) read(word, scene, depths);
+  DepthReader reader(scene);
+  for (const std::string& word : depth_words) {
+    const std::vector<double> read = reader.read(word);
+    depths.insert(depths.end(), read.begin(), read.end());
+  }
   if (is_volume()) {
     std::vector<double> ascending = depths;
     std::ranges::sort(ascending);

@@ -48,14 +48,18 @@ def judged(slipstick, scene, field, ratio, twist, words):
     return json.loads(done.stdout) if done.returncode in (0, 1) else {"verdict": "not judged", "why": done.stderr.strip(), "judged": []}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+def command_line(description):
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("slipstick")
     parser.add_argument("scene")
     parser.add_argument("output", type=Path)
     parser.add_argument("--json", type=Path)
     parser.add_argument("--only")
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    arguments = command_line(__doc__)
     board = []
     for folder, program in found(arguments.only):
         version = said_version(folder, program)

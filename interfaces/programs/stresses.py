@@ -3,7 +3,6 @@
 twisted by 0.5 and 0.9 of the limit moment, by PROGRAM and by programs with a file NAME/stresses.py, on the same grids and at the same
 points; `slipstick check` judges them by the exact ones. OUTPUT keeps the files. Reports programs that are missing."""
 
-import argparse
 import json
 import resource
 import subprocess
@@ -13,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import elements
+from on_meshes import command_line
 
 HERE = Path(__file__).resolve().parent
 CELLS, RATIOS = (32, 64, 128), (0.5, 0.9)
@@ -79,13 +79,7 @@ def said_version(name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("slipstick")
-    parser.add_argument("scene")
-    parser.add_argument("output", type=Path)
-    parser.add_argument("--json", type=Path)
-    parser.add_argument("--only")
-    arguments = parser.parse_args()
+    arguments = command_line(__doc__)
     arguments.output.mkdir(parents=True, exist_ok=True)
     versions = {}
     for name in sorted(file.parent.name for file in HERE.glob("*/stresses.py")):

@@ -165,6 +165,12 @@ StressPlane SubsurfaceStresses::at(double depth) {
   return plane;
 }
 
+Eigen::Vector3d principal_stresses(const std::array<double, kStresses>& s) {
+  Eigen::Matrix3d tensor;
+  tensor << s[k11], s[k12], s[k13], s[k12], s[k22], s[k23], s[k13], s[k23], s[k33];
+  return tensor.selfadjointView<Eigen::Lower>().eigenvalues();
+}
+
 /// Principal stresses are found only where they can be the largest: Tresca's number is at most 2/sqrt(3) of
 /// von Mises', and the largest principal stress exceeds the mean by at most 2/3 of it.
 void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
@@ -179,9 +185,7 @@ void LargestStresses::include(const StressPlane& plane, const Grid& grid) {
     keep(von_mises, equivalent, cell);
     const double mean = (s[k11] + s[k22] + s[k33]) / 3.0;
     if (1.155 * equivalent < tresca.value && mean + 0.667 * equivalent < tension.value) continue;
-    Eigen::Matrix3d tensor;
-    tensor << s[k11], s[k12], s[k13], s[k12], s[k22], s[k23], s[k13], s[k23], s[k33];
-    const Eigen::Vector3d principal = tensor.selfadjointView<Eigen::Lower>().eigenvalues();
+    const Eigen::Vector3d principal = principal_stresses(s);
     keep(tresca, principal[2] - principal[0], cell);
     keep(tension, principal[2], cell);
   }

@@ -73,6 +73,9 @@ Number von_mises(const std::array<Number, kStresses>& s) {
   return sqrt(0.5 * (d1 * d1 + d2 * d2 + d3 * d3) + 3.0 * shear);
 }
 
+/// In ascending order.
+Eigen::Vector3d principal_stresses(const std::array<double, kStresses>& s);
+
 /// The largest numbers that criteria of yield and fracture compare with a strength, Pa, and where: x1, x2 and
 /// depth, m. The first of equal ones is kept.
 struct LargestStresses {

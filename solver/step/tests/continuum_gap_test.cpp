@@ -19,6 +19,12 @@ namespace {
 
 using Eigen::ArrayXd;
 
+/// Draws numbers with equal chances.
+struct Between {
+  std::mt19937 random;
+  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+};
+
 /// Integrals over the contact by sums over 10 x 10 points of each cell, with displacements as sums over cells
 /// of the corner terms of Cerruti's solution, without a convolution.
 struct DirectSums {
@@ -122,10 +128,7 @@ double saved_on_quarters(const Scene& scene, const Solution& coarse) {
 
 // Finer tractions save a part of the error that the gap bounds.
 TEST(ContinuumGap, BoundsTheEnergyThatFinerTractionsSave) {
-  std::mt19937 random(7);
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  Between between{std::mt19937(7)};
   for (int k = 0; k < 8; ++k) {
     const Index cells = 2 * static_cast<Index>(between(8, 16));
     const double radius = between(0.005, 0.03);
@@ -182,10 +185,7 @@ TEST(PressureGap, BoundsTheErrorFromHertz) {
 
 // The finer pressure is closer to the true one than to the coarse one, whose distance and energy are bounded.
 TEST(PressureGap, BoundsTheDistanceFromFinerPressures) {
-  std::mt19937 random(11);
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  Between between{std::mt19937(11)};
   for (int k = 0; k < 6; ++k) {
     const Index cells = 2 * static_cast<Index>(between(8, 16));
     Scene scene = ellipsoid_scene(cells, 0.018 * between(1, 3), 0.018, 0.5);
