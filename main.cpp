@@ -155,7 +155,7 @@ int run(int argc, char** argv, const Ranks& ranks) {
 
 int main(int argc, char** argv) {
   slipstick::convergence::hold_standard_streams();
-  slipstick::solver::keep_freed_blocks();
+  slipstick::solver::prepare_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     slipstick::convergence::die_with_parent(argc, argv);

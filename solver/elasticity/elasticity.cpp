@@ -70,9 +70,9 @@ constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.7, 1.4, 1.4}, {5.9, 5.9, 5.9}}
 constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
 /// Shorter sides take as much memory as this many cells, since lines are transformed in groups.
 constexpr Index kMinSide = 16;
-/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): the matrices of pressure and
+/// Bytes of freed blocks that stay with the process, see prepare_heap(): the matrices of pressure and
 /// coupling, which have this part of the size of the tractions' matrix.
-constexpr double kKeptBlocks = 8.0 * 0x1p20;
+constexpr double kKeptBlocks = 16.0 * 0x1p20;
 constexpr double kPartOfKept = 0.5;
 
 const HeldOf& held_of(const BlockKernel& kernel) {

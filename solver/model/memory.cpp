@@ -9,6 +9,12 @@
 
 #ifdef __GLIBC__
 #include <malloc.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
 #endif
 
 namespace slipstick::solver {
@@ -81,10 +87,23 @@ double available_memory(const fs::path& root) {
   return std::max(least, 0.0);
 }
 
-void keep_freed_blocks() {
+void prepare_heap() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 8 << 20);
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  constexpr int kLargestInHeap = 16 << 20;
+  constexpr std::uintptr_t kHeap = 512 << 20;
+  constexpr std::uintptr_t kPage = 2 << 20;
+  mallopt(M_TRIM_THRESHOLD, -1);  // the heap never shrinks
+  rlimit addresses{};
+  if (getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur == RLIM_INFINITY) {
+    mallopt(M_MMAP_MAX, 0);
+    if (void* heap = std::malloc(kHeap)) {
+      const auto start = (std::bit_cast<std::uintptr_t>(heap) + kPage - 1) & ~(kPage - 1);
+      madvise(std::bit_cast<void*>(start), kHeap - kPage, MADV_HUGEPAGE);
+      std::free(heap);
+    }
+    mallopt(M_MMAP_MAX, std::numeric_limits<int>::max());
+  }
+  mallopt(M_MMAP_THRESHOLD, kLargestInHeap);
 #endif
 }
 
