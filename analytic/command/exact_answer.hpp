@@ -14,7 +14,8 @@
 #include "analytic/stresses/stress_field.hpp"
 #include "analytic/torsion.hpp"
 
-/// The answers of the command `exact`, their JSON, and their text for a person.
+/// The answers of the command `exact` as JSON, and their text for a person, which is made from the JSON. A number that
+/// is missing is null, with the reason under its key with the ending _reason.
 namespace slipstick::analytic {
 
 using Json = nlohmann::ordered_json;
@@ -59,102 +60,26 @@ struct ExactContact {
 /// The state that was asked for, of any profile.
 using StateOf = std::function<TorsionState(const Profile&)>;
 
-/// A number, or the reason why it is missing.
-struct Number {
-  double value;
-  std::string missing = {};
-};
+/// Stresses at the points of --at, in a field whose slip ends at the radius `front`.
+using StressesOf = std::function<Json(const StressField& field, double front)>;
 
-struct AtRadius {
-  double radius;
-  Number number;
-};
-using AtRadii = std::vector<AtRadius>;
+/// The stresses at a point, and with a friction coefficient how severe both parts are together.
+Json stresses_at(BodyPoint at, const StressField& field, double poisson, const std::optional<double>& friction);
 
-/// Stresses at a point, and with a friction coefficient how severe both parts are together.
-struct AtPoint {
-  BodyPoint at;
-  PressureStress pressure;
-  TorsionStress torsion;
-  std::optional<Severity> severity = {};
-  std::optional<double> yield_pressure = {};  ///< Pa: p0 at first yield
-  std::optional<double> yield_load = {};      ///< N: the normal load, at the same M/M_lim
-};
-using AtPoints = std::vector<AtPoint>;
-AtPoints at_points(const StressField& field, const std::vector<BodyPoint>& points, double poisson,
-                   const std::optional<double>& friction);
+/// One state of first loading, tractions at some radii, and the way back from there to another M/M_lim; of a sphere
+/// also the paper's equations as printed, and each of approximations().
+Json answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
+                  const std::optional<double>& unload_to, const StressesOf& stresses_of);
+void write_state(std::ostream& out, const Json& answer);
 
-struct StateNumbers {
-  TorsionState state;
-  AtRadii traction;
-  AtRadii pressure;
-};
-
-/// Estimated errors of a table's numbers.
-struct TableErrors {
-  StateNumbers numbers;
-  double moment_limit;
-  double mean_pressure;
-};
-
-/// Of a sphere: the paper's equations as printed, and each of approximations().
-struct OtherLaws {
-  AtRadii equation_1;
-  Number equation_5;
-  Number equation_7;
-  std::vector<Number> law_twists;
-};
-
-struct CyclePoint {
-  CycleState state;
-  AtRadii traction;
-  AtPoints stresses = {};
-};
-
-/// A result in SI units.
-struct UnitsRow {
-  const char* key;
-  const char* label;
-  const char* unit;
-  double value;
-};
-
-/// One state of first loading, tractions at some radii, and the way back from there to another M/M_lim.
-struct StateAnswer {
-  ExactContact contact;
-  StateNumbers numbers;
-  Number energy_lost_per_cycle;
-  AtPoints stresses = {};
-  std::optional<CyclePoint> unloaded = {};
-  std::optional<TableErrors> errors = {};
-  std::string errors_missing = {};  ///< the reason, where a table's errors are
-  std::optional<OtherLaws> printed = {};
-  std::vector<UnitsRow> units = {};
-};
-StateAnswer answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
-                         const std::optional<double>& unload_to);
-Json to_json(const StateAnswer& answer);
-void write(std::ostream& out, const StateAnswer& answer);
-
-/// A history of loads at constant normal load: turning points M/M_lim in turn.
-struct HistoryAnswer {
-  ExactContact contact;
-  std::vector<CyclePoint> history = {};
-  std::vector<CycleState> curve = {};
-  std::vector<UnitsRow> units = {};
-};
-HistoryAnswer answer_history(const ExactContact& contact, const std::vector<double>& turning_points,
-                             int points_per_branch, const std::vector<double>& radii);
-Json to_json(const HistoryAnswer& answer);
-void write(std::ostream& out, const HistoryAnswer& answer);
+/// A history of loads at constant normal load: turning points M/M_lim in turn, and the curve through them.
+Json answer_history(const ExactContact& contact, const std::vector<double>& turning_points, int points_per_branch,
+                    const std::vector<double>& radii, const StressesOf& stresses_of);
+void write_history(std::ostream& out, const Json& answer);
 
 /// One state of first loading with proven digits.
-struct CertifiedAnswer {
-  ExactContact contact;
-  std::vector<std::string> radii;
-  certified::State state;
-};
-Json to_json(const CertifiedAnswer& answer);
-void write(std::ostream& out, const CertifiedAnswer& answer);
+Json answer_certified(const ExactContact& contact, const certified::State& state,
+                      const std::vector<std::string>& radii);
+void write_certified(std::ostream& out, const Json& answer);
 
 }  // namespace slipstick::analytic

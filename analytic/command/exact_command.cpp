@@ -63,13 +63,13 @@ struct Options {
   std::optional<double> shear_modulus;
 };
 
-/// An error of range or form, with the option that brought the value.
+/// An error of range or form becomes one with the option that brought the value.
 template <class Function>
 auto naming(const std::string& option, Function function) {
   try {
     return function();
   } catch (const std::logic_error& error) {
-    throw std::domain_error(option + ": " + error.what());
+    throw std::runtime_error(option + ": " + error.what());
   }
 }
 
@@ -134,76 +134,62 @@ double load_of(double pressure, const Options& options, const ExactContact& exac
   return exact.units->load * std::pow(pressure / before, power);
 }
 
-/// The stresses at the points asked for. front: the radius at which slip ends.
-template <class State>
-AtPoints stresses(const Options& options, const State& state, double front, const ExactContact& exact) {
-  return naming("--at", [&] {
-    const StressField field(state, *exact.profile.profile);
-    std::vector<BodyPoint> points;
-    for (const std::string& text : options.at) {
-      if (text == kMostStressed) {
-        if (!options.friction) throw std::domain_error("\"largest\" is allowed with --friction");
-        const LargestStress largest =
-            largest_stress(field, &Severity::von_mises, *options.friction, options.poisson, front);
-        points.push_back(largest.at);
-        continue;
+/// A point of --at, or where the stress is the largest. front: the radius at which slip ends.
+BodyPoint point_at(const std::string& text, const Options& options, const StressField& field, double front) {
+  if (text != kMostStressed) {
+    const auto comma = std::min(text.find(','), text.size());
+    return {number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))};
+  }
+  if (!options.friction) throw std::domain_error("\"largest\" is allowed with --friction");
+  return largest_stress(field, &Severity::von_mises, *options.friction, options.poisson, front).at;
+}
+
+/// The stresses at the points of --at.
+StressesOf stresses(const Options& options, const ExactContact& exact) {
+  return [&](const StressField& field, double front) {
+    return naming("--at", [&] {
+      Json list = Json::array();
+      for (const std::string& text : options.at) {
+        Json point = stresses_at(point_at(text, options, field, front), field, options.poisson, options.friction);
+        if (options.yield_stress && text == kMostStressed) {
+          const double pressure = *options.yield_stress / point.at("von_mises").get<double>();
+          point["yield_pressure"] = pressure;
+          if (exact.units) point["yield_load"] = load_of(pressure, options, exact);
+        }
+        list.push_back(std::move(point));
       }
-      const auto comma = std::min(text.find(','), text.size());
-      points.push_back({number(text.substr(0, comma)), number(text.substr(std::min(comma + 1, text.size())))});
-    }
-    AtPoints found = at_points(field, points, options.poisson, options.friction);
-    for (std::size_t i = 0; i < found.size() && options.yield_stress; ++i) {
-      if (options.at[i] != kMostStressed) continue;
-      found[i].yield_pressure = *options.yield_stress / found[i].severity->von_mises;
-      if (exact.units) found[i].yield_load = load_of(*found[i].yield_pressure, options, exact);
-    }
-    return found;
-  });
+      return list;
+    });
+  };
 }
 
-template <class Answer>
-int give(const Answer& answer, std::ostream& out, Json& result) {
-  result = to_json(answer);
-  write(out, answer);
-  return 0;
-}
-
-int run(const Options& options, std::ostream& out, Json& result) {
+Json run(const Options& options, std::ostream& out) {
   const ExactContact exact = contact(options);
-  const Profile& profile = *exact.profile.profile;
   if (!options.history.empty()) {
-    HistoryAnswer answer =
-        naming("--history", [&] { return answer_history(exact, options.history, options.points, radii(options)); });
-    LoadingHistory history(profile);
-    for (CyclePoint& point : answer.history) {
-      history.load_to(point.state.moment_ratio);
-      point.stresses = stresses(options, history, history.state().stick_ratio, exact);
-    }
-    return give(answer, out, result);
+    Json answer = naming("--history", [&] {
+      return answer_history(exact, options.history, options.points, radii(options), stresses(options, exact));
+    });
+    write_history(out, answer);
+    return answer;
   }
   const Given& from = kGiven[given(options)];
   const std::string& text = options.value[given(options)];
   if (options.certified) {
-    const auto state = [&] {
+    const auto state = naming("--certified", [&] {
       return certified::state(certified::profile_named(exact.name), from.quantity, text, options.radii,
                               *options.certified);
-    };
-    return give(CertifiedAnswer{exact, options.radii, naming("--certified", state)}, out, result);
+    });
+    Json answer = answer_certified(exact, state, options.radii);
+    write_certified(out, answer);
+    return answer;
   }
-  const std::vector<double> at = radii(options);
   const double value = naming(from.option, [&] { return number(text); });
   const StateOf state_of = [&](const Profile& any) {
     return naming(from.option, [&] { return from.state(value, any); });
   };
-  StateAnswer answer = answer_state(exact, state_of, at, options.unload_to);
-  answer.stresses = stresses(options, answer.numbers.state, answer.numbers.state.stick_ratio, exact);
-  if (answer.unloaded) {
-    LoadingHistory history(profile);
-    history.load_to(answer.numbers.state.moment_ratio);
-    history.load_to(*options.unload_to);
-    answer.unloaded->stresses = stresses(options, history, history.state().stick_ratio, exact);
-  }
-  return give(answer, out, result);
+  Json answer = answer_state(exact, state_of, radii(options), options.unload_to, stresses(options, exact));
+  write_state(out, answer);
+  return answer;
 }
 
 void add_state_options(CLI::App& exact, Options& options) {
@@ -274,7 +260,10 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
       "          slipstick exact --moment-ratio 0.5 --certified 50\n"
       "          slipstick exact --moment-ratio 0.9 --at 0,0.48 --at largest --friction 0.3\n"
       "          slipstick exact --profile cone --history 0.8,-0.8,0.8 --json loop.json");
-  return [options](std::ostream& out, Json& result) { return run(*options, out, result); };
+  return [options](std::ostream& out, Json& result) {
+    result = run(*options, out);
+    return 0;
+  };
 }
 
 }  // namespace slipstick::analytic
