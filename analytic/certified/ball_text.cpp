@@ -3,54 +3,26 @@
 #include <fmt/core.h>
 
 #include <cstdlib>
+#include <regex>
 #include <stdexcept>
-#include <string_view>
 
 namespace slipstick::analytic {
 
 namespace {
 
-class Integer {
- public:
-  Integer() { fmpz_init(n_); }
-  Integer(const std::string& digits, int base) : Integer() { fmpz_set_str(n_, digits.c_str(), base); }
-  Integer(const Integer&) = delete;
-  Integer& operator=(const Integer&) = delete;
-  ~Integer() { fmpz_clear(n_); }
-  fmpz* get() { return n_; }
-  std::string text() const {
-    char* digits = fmpz_get_str(nullptr, 10, n_);
-    std::string result = digits;
-    flint_free(digits);
-    return result;
-  }
+/// Digits in a base, as a whole number.
+Rational whole(const std::string& digits, int base) {
+  Rational result;
+  fmpq_set_str(result.get(), digits.c_str(), base);
+  return result;
+}
 
- private:
-  fmpz_t n_;
-};
-
-/// Takes a number's text apart from left to right.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-  bool done() const { return rest_.empty(); }
-  bool take(std::string_view wanted) {
-    if (!rest_.starts_with(wanted)) return false;
-    rest_.remove_prefix(wanted.size());
-    return true;
-  }
-  /// Whether there was a minus.
-  bool take_sign() { return take("-") || (take("+"), false); }
-  std::string take_digits(bool hexadecimal) {
-    const std::string_view allowed(hexadecimal ? "0123456789abcdefABCDEF" : "0123456789");
-    std::string digits(rest_.substr(0, rest_.find_first_not_of(allowed)));
-    rest_.remove_prefix(digits.size());
-    return digits;
-  }
-
- private:
-  std::string_view rest_;
-};
+std::string in_digits(const Rational& number) {
+  char* const digits = fmpq_get_str(nullptr, 10, number.get());
+  std::string result = digits;
+  flint_free(digits);
+  return result;
+}
 
 /// base^exponent
 Rational power(slong base, slong exponent) { return made_by<Rational>(fmpq_pow_si, Rational(base).get(), exponent); }
@@ -96,32 +68,23 @@ std::optional<slong> hundredths(const Ball& ball, slong most) {
 
 Rational read_exactly(const std::string& name, const std::string& text) {
   constexpr std::size_t kLongest = 2000;
-  constexpr std::size_t kLongestExponent = 5;
+  static const std::regex decimal(R"(([+-]?)([0-9]*)\.?([0-9]*)(?:[eE]([+-]?[0-9]{1,5}))?)");
+  static const std::regex hexadecimal(R"(([+-]?)0[xX]([0-9a-fA-F]*)\.?([0-9a-fA-F]*)(?:[pP]([+-]?[0-9]{1,5}))?)");
 
-  Reader in(text);
-  const bool negative = in.take_sign();
-  const bool hex = in.take("0x") || in.take("0X");
-  const std::string whole = in.take_digits(hex);
-  const std::string fraction = in.take(".") ? in.take_digits(hex) : "";
-  bool fine = !whole.empty() || !fraction.empty();
-  slong exponent = 0;
-  if (in.take(hex ? "p" : "e") || in.take(hex ? "P" : "E")) {
-    const bool below = in.take_sign();
-    const std::string digits = in.take_digits(false);
-    fine = fine && !digits.empty() && digits.size() <= kLongestExponent;
-    if (fine) exponent = below ? -std::stol(digits) : std::stol(digits);
-  }
-  if (!fine || !in.done() || text.size() > kLongest)
+  std::smatch parts;
+  const bool fits = text.size() <= kLongest;
+  const bool hex = fits && std::regex_match(text, parts, hexadecimal);
+  if (!(hex || (fits && std::regex_match(text, parts, decimal))) || parts.length(2) + parts.length(3) == 0)
     throw std::domain_error(fmt::format("{} = '{}' is not a number", name, text.substr(0, kLongest)));
-  exponent -= static_cast<slong>(fraction.size()) * (hex ? 4 : 1);
-  const auto result = made_by<Rational>(fmpq_mul_fmpz, power(hex ? 2 : 10, exponent).get(),
-                                        Integer(whole + fraction, hex ? 16 : 10).get());
+  const slong exponent = (parts[4].matched ? std::stol(parts[4]) : 0) - parts.length(3) * (hex ? 4 : 1);
+  const auto result = made_by<Rational>(fmpq_mul, power(hex ? 2 : 10, exponent).get(),
+                                        whole(parts.str(2) + parts.str(3), hex ? 16 : 10).get());
 
   static const Rational least = power(10, -1000);
   static const Rational most = power(10, 1000);
   if (result != Rational(0) && (result < least || most < result))
     throw std::domain_error(fmt::format("{} = {} is beyond 1e-1000..1e1000", name, text));
-  return negative ? Rational(0) - result : result;
+  return parts.str(1) == "-" ? Rational(0) - result : result;
 }
 
 std::optional<certified::Number> print_proven(const Ball& ball, int digits) {
@@ -135,14 +98,14 @@ std::optional<certified::Number> print_proven(const Ball& ball, int digits) {
   slong exponent = decimal_exponent(ball);
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Ball units = ball * ten_to(digits - 1 - exponent);  // of the last digit
-    Integer rounded;
-    arf_get_fmpz(rounded.get(), arb_midref(units.get()), ARF_RND_NEAR);
-    const std::string text = rounded.text();
+    Rational rounded;
+    arf_get_fmpz(fmpq_numref(rounded.get()), arb_midref(units.get()), ARF_RND_NEAR);
+    const std::string text = in_digits(rounded);
     if (text.size() != count) {
       exponent += text.size() > count ? 1 : -1;
       continue;
     }
-    const auto error = made_by<Ball>(arb_sub_fmpz, units.get(), rounded.get(), Precision::bits());
+    const auto error = made_by<Ball>(arb_sub_fmpz, units.get(), fmpq_numref(rounded.get()), Precision::bits());
     const auto radius = hundredths(error, 51);
     if (!radius) return {};
     const std::string radius_text = std::to_string(*radius);
