@@ -31,11 +31,15 @@ constexpr std::array kMembers{
     &TorsionState::stick_complement, &TorsionState::twist,          &TorsionState::moment,
     &TorsionState::tangent_stiffness};
 
-StateAt state_by(int given) {
-  if (!(given >= 0 && given < static_cast<int>(kStateAt.size())))
-    throw std::invalid_argument(fmt::format("given = {}; allowed: 0 to {}", given, kStateAt.size() - 1));
-  return kStateAt[static_cast<std::size_t>(given)];
+/// The entry of this number; the message allows numbers up to `last`.
+template <class Table>
+auto numbered(const Table& table, const char* name, int number, std::size_t last) {
+  if (!(number >= 0 && number < static_cast<int>(table.size())))
+    throw std::invalid_argument(fmt::format("{} = {}; allowed: 0 to {}", name, number, last));
+  return table[static_cast<std::size_t>(number)];
 }
+
+StateAt state_by(int given) { return numbered(kStateAt, "given", given, kStateAt.size() - 1); }
 
 /// An array from C; it may be null if it has no elements.
 template <class Value>
@@ -46,10 +50,13 @@ std::span<Value> array(Value* values, std::size_t count, const char* name) {
 
 /// results[i] = function(values[i]); an error names the index of the value.
 template <class Result, class Function>
-void for_each(std::span<const double> values, const char* name, std::span<Result> results, const Function& function) {
+void for_each(std::size_t n, const double* values, const char* name, Result* results, const char* results_name,
+              const Function& function) {
+  const auto from = array(values, n, name);
+  const auto to = array(results, n, results_name);
   std::size_t i = 0;
   try {
-    for (; i < values.size(); ++i) results[i] = function(values[i]);
+    for (; i < n; ++i) to[i] = function(from[i]);
   } catch (const std::logic_error& error) {
     throw std::domain_error(fmt::format("{}[{}]: {}", name, i, error.what()));
   }
@@ -62,23 +69,6 @@ slipstick_state in_c(const TorsionState& state) {
 
 slipstick_cycle_state in_c(const analytic::CycleState& state) {
   return {state.moment_ratio, state.moment, state.twist, state.stick_ratio, state.tangent_stiffness, state.dissipated};
-}
-
-double pressure_at(const Profile& profile, double radius) {
-  if (!(radius >= 0 && radius <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", radius));
-  return profile.pressure(radius);
-}
-
-void find_quantity(const Profile& profile, StateAt state_at, std::span<const double> values, int wanted,
-                   std::span<double> results) {
-  if (wanted == SLIPSTICK_ENERGY_LOST) {
-    return for_each(values, "values", results,
-                    [&](double value) { return analytic::energy_lost_per_cycle(state_at(value, profile), profile); });
-  }
-  if (!(wanted >= 0 && wanted < static_cast<int>(kMembers.size())))
-    throw std::invalid_argument(fmt::format("wanted = {}; allowed: 0 to {}", wanted, kMembers.size()));
-  const auto member = kMembers[static_cast<std::size_t>(wanted)];
-  for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
 /// front: the radius at which slip ends.
@@ -131,16 +121,19 @@ int with_profile(const char* name, const Work& work) noexcept {
 using namespace slipstick;
 
 int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted, double* results) {
+  if (wanted == SLIPSTICK_ENERGY_LOST)
+    return slipstick_exact_energy_lost(profile, given, n, values, c::kLeastLossError, results);
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
-    c::find_quantity(shape, c::state_by(given), c::array(values, n, "values"), wanted, c::array(results, n, "results"));
+    const c::StateAt state_at = c::state_by(given);
+    const auto member = c::numbered(c::kMembers, "wanted", wanted, SLIPSTICK_ENERGY_LOST);
+    c::for_each(n, values, "values", results, "results", [&](double value) { return state_at(value, shape).*member; });
   });
 }
 
 int slipstick_exact_states(const char* profile, int given, size_t n, const double* values, slipstick_state* states) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const c::StateAt state_at = c::state_by(given);
-    c::for_each(c::array(values, n, "values"), "values", c::array(states, n, "states"),
-                [&](double value) { return c::in_c(state_at(value, shape)); });
+    c::for_each(n, values, "values", states, "states", [&](double value) { return c::in_c(state_at(value, shape)); });
   });
 }
 
@@ -152,7 +145,7 @@ int slipstick_exact_energy_lost(const char* profile, int given, size_t n, const 
       throw std::invalid_argument(
           fmt::format("relative_error = {}; allowed: {} to below 1", relative_error, c::kLeastLossError));
     }
-    c::for_each(c::array(values, n, "values"), "values", c::array(results, n, "results"), [&](double value) {
+    c::for_each(n, values, "values", results, "results", [&](double value) {
       return analytic::energy_lost_per_cycle(state_at(value, shape), shape, relative_error);
     });
   });
@@ -162,15 +155,17 @@ int slipstick_exact_traction(const char* profile, int given, double value, size_
                              double* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const analytic::TorsionState state = c::state_by(given)(value, shape);
-    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
+    c::for_each(n, radii, "radii", results, "results",
                 [&](double radius) { return analytic::traction(state, radius, shape); });
   });
 }
 
 int slipstick_exact_pressure(const char* profile, size_t n, const double* radii, double* results) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
-    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
-                [&](double radius) { return c::pressure_at(shape, radius); });
+    c::for_each(n, radii, "radii", results, "results", [&](double r) {
+      if (!(r >= 0 && r <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", r));
+      return shape.pressure(r);
+    });
   });
 }
 
@@ -184,11 +179,10 @@ int slipstick_exact_profile(const char* profile, slipstick_profile* result) {
 int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios, slipstick_cycle_state* states) {
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     analytic::LoadingHistory history(shape);
-    c::for_each(c::array(moment_ratios, n, "moment_ratios"), "moment_ratios", c::array(states, n, "states"),
-                [&](double moment_ratio) {
-                  history.load_to(moment_ratio);
-                  return c::in_c(history.state());
-                });
+    c::for_each(n, moment_ratios, "moment_ratios", states, "states", [&](double moment_ratio) {
+      history.load_to(moment_ratio);
+      return c::in_c(history.state());
+    });
   });
 }
 
@@ -210,8 +204,7 @@ int slipstick_exact_history_traction(const char* profile, size_t n_moments, cons
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     analytic::LoadingHistory history(shape);
     for (const double moment_ratio : c::array(moment_ratios, n_moments, "moment_ratios")) history.load_to(moment_ratio);
-    c::for_each(c::array(radii, n_radii, "radii"), "radii", c::array(results, n_radii, "results"),
-                [&](double radius) { return history.traction(radius); });
+    c::for_each(n_radii, radii, "radii", results, "results", [&](double radius) { return history.traction(radius); });
   });
 }
 
@@ -222,7 +215,7 @@ int slipstick_exact_stresses(const char* profile, int given, size_t n_values, co
     const analytic::StressField field =
         c::stressed_body(shape, given, c::array(values, n_values, "values"), friction).field;
     const double* depth = c::array(depths, n, "depths").data();
-    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"), [&](double radius) {
+    c::for_each(n, radii, "radii", results, "results", [&](double radius) {
       return c::stress_at(field, {radius, *depth++}, friction, poisson);
     });
   });
@@ -234,11 +227,9 @@ int slipstick_exact_largest_stress(const char* profile, int given, size_t n_valu
   constexpr std::array kMeasures{&Severity::von_mises, &Severity::tresca, &Severity::tension};
   return c::with_profile(profile, [&](const analytic::Profile& shape) {
     c::require(result, "result");
-    if (!(measure >= 0 && measure < static_cast<int>(kMeasures.size())))
-      throw std::invalid_argument(fmt::format("measure = {}; allowed: 0, 1, 2", measure));
+    const auto wanted = c::numbered(kMeasures, "measure", measure, kMeasures.size() - 1);
     const auto body = c::stressed_body(shape, given, c::array(values, n_values, "values"), friction);
-    const auto [value, at] =
-        analytic::largest_stress(body.field, kMeasures.at(static_cast<size_t>(measure)), friction, poisson, body.front);
+    const auto [value, at] = analytic::largest_stress(body.field, wanted, friction, poisson, body.front);
     *result = {value, at.radius, at.depth};
   });
 }

@@ -65,19 +65,12 @@ struct Request {
 /// Solves run concurrently. A solve that reads files by HDF5's library or changes FFTW's wisdom, of which the
 /// process has one each, excludes all others. A forked process has no other threads and gets a new lock.
 std::shared_mutex* solving = new std::shared_mutex;
-class PlannerLock {
- public:
-  explicit PlannerLock(bool exclusive) {
-    if (exclusive) {
-      exclusive_ = std::unique_lock(*solving);
-    } else {
-      shared_ = std::shared_lock(*solving);
-    }
+struct PlannerLock {
+  explicit PlannerLock(bool exclusive) : shared(*solving, std::defer_lock), exclusively(*solving, std::defer_lock) {
+    exclusive ? exclusively.lock() : shared.lock();
   }
-
- private:
-  std::shared_lock<std::shared_mutex> shared_;
-  std::unique_lock<std::shared_mutex> exclusive_;
+  std::shared_lock<std::shared_mutex> shared;
+  std::unique_lock<std::shared_mutex> exclusively;
 };
 
 bool needs_exclusive(const Scene& scene) {
