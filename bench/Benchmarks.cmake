@@ -1,8 +1,8 @@
 # The programs that measure.
 
 add_executable(slipstick_benchmarks
-  suite/exact_benchmark.cpp suite/influence_benchmark.cpp suite/normal_benchmark.cpp suite/operator_benchmark.cpp
-  suite/paper_scene.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
+  suite/exact_benchmark.cpp suite/influence_benchmark.cpp suite/operator_benchmark.cpp
+  suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)
 target_precompile_headers(slipstick_benchmarks PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp>
   <benchmark/benchmark.h>)

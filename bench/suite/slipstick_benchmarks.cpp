@@ -41,7 +41,6 @@ int run(std::vector<std::string> words) {
   slipstick::bench::Suite suite;
   slipstick::bench::add_influence_benchmarks(suite);
   slipstick::bench::add_operator_benchmarks(suite);
-  slipstick::bench::add_normal_benchmarks(suite);
   slipstick::bench::add_solve_benchmarks(suite);
   slipstick::bench::add_exact_benchmarks(suite);
   benchmark::Initialize(&count, arguments.data());

@@ -66,7 +66,6 @@ class Suite {
 /// The program's benchmarks, file by file.
 void add_influence_benchmarks(Suite& suite);
 void add_operator_benchmarks(Suite& suite);
-void add_normal_benchmarks(Suite& suite);
 void add_solve_benchmarks(Suite& suite);
 void add_exact_benchmarks(Suite& suite);
 
