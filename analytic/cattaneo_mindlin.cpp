@@ -52,13 +52,6 @@ TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& 
           .tangent_stiffness = 4 * stick};
 }
 
-double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter) {
-  if (!(radius >= 0 && radius <= 1)) out_of_range("r/a", radius, "0 <= r/a <= 1");
-  const double sum = indenter.pressure(1, radius) - indenter.pressure(state.force_deficit, radius);
-  if (!std::isfinite(sum)) out_of_range("r/a", radius, "where the pressure is finite");
-  return sum;
-}
-
 /// The loop's area by the slip that each punch of the superposition sees, (n + 1)^2/n^2 times
 /// integral_c^1 (1 - t^n)(t^n - c^n) dt: no term is negative.
 double energy_lost_per_cycle(const TangentialState& state, const SelfSimilarIndenter& indenter) {

@@ -56,13 +56,9 @@ struct TangentialState {
   double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, as for a bonded circle of radius c
 };
 
-/// The state at a given force. Relative error of every member a few eps, plus what an ulp of the argument
-/// costs. Throws std::domain_error, with the value and the range, outside [0, 1).
+/// The state at a given force; tangential_history.hpp has the tractions. Relative error of every member a few eps, plus
+/// what an ulp of the argument costs. Throws std::domain_error, with the value and the range, outside [0, 1).
 TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter);
-
-/// Traction q/(mu p0) along F at radius r/a; absolute error a few eps of the pressure. Throws
-/// std::domain_error outside [0, 1] and where the pressure is infinite.
-double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter);
 
 /// Energy lost in a cycle between F and -F, over (mu W)^2/(G_t a): four times the loss of the first loading
 /// to F. For the sphere 9/5 (1 - L^(5/3) - 5/6 (1 - L)(1 + L^(2/3))) with L = 1 - F/(mu W) (Mindlin, Mason,

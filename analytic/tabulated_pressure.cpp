@@ -357,7 +357,8 @@ double interpolated_pressure(const Points& points, double radius) {
 }
 
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
-                                   const std::vector<std::string>& places) {
+                                   std::vector<std::string> places) {
+  while (places.size() < points.size()) places.push_back(fmt::format("{}, point {}", name, places.size() + 1));
   check_points(name, points, places);
   const double a = points.back().radius;
   const double peak = std::ranges::max_element(points, {}, &PressurePoint::pressure)->pressure;
@@ -370,12 +371,6 @@ TabulatedProfile tabulated_profile(const std::string& name, std::vector<Pressure
           .mean_pressure = peak * mean,
           .points = std::move(points),
           .largest_pressure = peak};
-}
-
-TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points) {
-  std::vector<std::string> places;
-  for (std::size_t i = 0; i < points.size(); ++i) places.push_back(fmt::format("{}, point {}", name, i + 1));
-  return tabulated_profile(name, points, places);
 }
 
 TabulatedProfile read_tabulated_profile(const std::string& file) {
@@ -391,7 +386,7 @@ TabulatedProfile read_tabulated_profile(const std::string& file) {
     places.push_back(fmt::format("{}:{}", file, number));
     points.push_back(parse_point(line, places.back()));
   }
-  return tabulated_profile(file, std::move(points), places);
+  return tabulated_profile(file, std::move(points), std::move(places));
 }
 
 }  // namespace slipstick::analytic

@@ -31,15 +31,12 @@ struct TabulatedProfile {
   double largest_pressure;
 };
 
-/// `name` is for messages and for the profile. Throws std::invalid_argument, with the point and the allowed
-/// range, unless: at least 16 points; radii finite, rising from 0; pressures finite and positive, at the last
-/// point perhaps 0; and H decreasing, since else no circle sticks (the slip would begin inside: a pressure
-/// that rises outwards too much).
-TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points);
-
-/// The same for points that messages name by `places`, lines of a file.
+/// `name` is for messages and for the profile; messages name the points by `places`, lines of a file, or else by
+/// their number. Throws std::invalid_argument, with the point and the allowed range, unless: at least 16 points;
+/// radii finite, rising from 0; pressures finite and positive, at the last point perhaps 0; and H decreasing, since
+/// else no circle sticks (the slip would begin inside: a pressure that rises outwards too much).
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
-                                   const std::vector<std::string>& places);
+                                   std::vector<std::string> places = {});
 
 /// The same from a CSV file: a radius and a pressure a line, perhaps under the header
 /// `radius,pressure`; empty lines and lines that begin with # do not count. Throws with file and line, and

@@ -52,7 +52,6 @@ struct Units {
 
 /// The contact asked about.
 struct ExactContact {
-  std::string name;  ///< of the profile, as typed
   NamedProfile profile;
   std::optional<Units> units;
 };

@@ -98,16 +98,13 @@ ExactContact contact(const Options& options) {
   if (options.yield_stress && std::ranges::find(options.at, kMostStressed) == options.at.end())
     throw std::domain_error("--yield-stress: allowed with --at largest");
   if (!options.normal_load)
-    return {.name = options.profile,
-            .profile = naming("--profile", [&] { return find_profile(options.profile); }),
-            .units = {}};
+    return {.profile = naming("--profile", [&] { return find_profile(options.profile); }), .units = {}};
   PressedContact pressed = naming("--shape", [&] {
     return press(
         options.profile,
         {.load = *options.normal_load, .effective_modulus = *options.effective_modulus, .shape = options.shape});
   });
-  return {.name = options.profile,
-          .profile = std::move(pressed.profile),
+  return {.profile = std::move(pressed.profile),
           .units = Units{.indentation = pressed.indentation,
                          .load = *options.normal_load,
                          .friction = options.friction,
@@ -176,7 +173,7 @@ Json run(const Options& options, std::ostream& out) {
   const std::string& text = options.value[given(options)];
   if (options.certified) {
     const auto state = naming("--certified", [&] {
-      return certified::state(certified::profile_named(exact.name), from.quantity, text, options.radii,
+      return certified::state(certified::profile_named(options.profile), from.quantity, text, options.radii,
                               *options.certified);
     });
     Json answer = answer_certified(exact, state, options.radii);
