@@ -225,6 +225,16 @@ const Profile& lasting() {
 
 double Profile::punch_density(StickRadius) const { return std::numeric_limits<double>::quiet_NaN(); }
 
+/// Up to kSmall above H(1) the difference would lose digits to it; the slope's integral does not.
+double Profile::twist_gain(StickRadius c, StickRadius s) const {
+  constexpr double kSmall = 0.1;
+  const double deep = twist_integral(c);
+  if (deep >= (1 + kSmall) * edge()) return deep - twist_integral(s);
+  return gsl::gauss_legendre(
+      [&](double x) { return twist_slope({.ratio = std::exp(-x), .complement = -std::expm1(-x)}); },
+      -std::log1p(-s.complement), -std::log1p(-c.complement));
+}
+
 double Profile::bonded_traction(double radius) const {
   return edge() == 0 ? 0 : 2 / pi * edge() * radius / std::sqrt((1 - radius) * (1 + radius));
 }

@@ -10,6 +10,9 @@ namespace slipstick::analytic {
 /// The stick radius over the contact radius, c = a_s/a, and 1 - c: near either end one of them carries digits
 /// that the other cannot.
 struct StickRadius {
+  /// c - r.
+  double beyond(double r) const { return ratio < 0.5 ? ratio - r : (1 - r) - complement; }
+
   double ratio;
   double complement;
 };
@@ -60,6 +63,8 @@ class Profile {
   /// -c H'(c): the slope of H in -ln c, and 3/8 c^-2 that of M in -c. A few digits do, for Newton steps; all
   /// of them near c = 1 where there is an edge term, since differences of H are integrals of this there.
   virtual double twist_slope(StickRadius stick) const = 0;
+  /// H(c) - H(s), c <= s, to all digits, also where both are near H(1) > 0.
+  double twist_gain(StickRadius c, StickRadius s) const;
   /// Moment at the stick radius c.
   virtual MomentShare moment_share(StickRadius stick) const = 0;
   /// q/(mu p0) at r < c, c < 1 or without an edge term. `inward` is c - r, given apart since it may be tiny.

@@ -12,18 +12,6 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// H(c) - H(s), c < s.
-double twist_gain(const Profile& profile, StickRadius c, StickRadius s) {
-  // Up to this much above H(1) the difference would lose digits to it; the slope's integral does not.
-  constexpr double kSmall = 0.1;
-
-  const double deep = profile.twist_integral(c);
-  if (deep >= (1 + kSmall) * profile.edge()) return deep - profile.twist_integral(s);
-  return gsl::gauss_legendre(
-      [&](double x) { return profile.twist_slope({.ratio = std::exp(-x), .complement = -std::expm1(-x)}); },
-      -std::log1p(-s.complement), -std::log1p(-c.complement));
-}
-
 /// integral_c^1 s^2 (H(c) - H(s)) weight(s) ds.
 template <class Weight>
 double slip_integral(const Profile& profile, StickRadius c, double relative, Weight weight) {
@@ -33,7 +21,7 @@ double slip_integral(const Profile& profile, StickRadius c, double relative, Wei
   const double integral = gsl::integral(
       [&](double t) {
         const StickRadius s{.ratio = (1 - t) + c.ratio * t, .complement = c.complement * t};
-        return s.ratio * s.ratio * (twist_gain(profile, c, s) / deep) * weight(s);
+        return s.ratio * s.ratio * (profile.twist_gain(c, s) / deep) * weight(s);
       },
       0, 1, relative);
   return integral * deep * c.complement;

@@ -155,13 +155,13 @@ class Superposition : public Profile {
                [&, front = front(c)](const Punch& punch) { return flat_punch_profile().twist_integral(front(punch)); });
   }
   double twist_slope(StickRadius c) const override {
-    const double at_front = distance_to_flat(c) > 0 ? weight(c.ratio, c.complement, distance_to_flat(c)) : 0;
+    const double at_front = c.beyond(shape_.flat) > 0 ? weight(c.ratio, c.complement, c.beyond(shape_.flat)) : 0;
     return pi / 2 * at_front + sum(punches(c, c.ratio), 0, [&, front = front(c)](const Punch& punch) {
              return flat_punch_profile().twist_slope(front(punch));
            });
   }
   double punch_density(StickRadius s) const override {
-    const double beyond_flat = distance_to_flat(s);
+    const double beyond_flat = s.beyond(shape_.flat);
     return beyond_flat > 0 ? weight(s.ratio, s.complement, beyond_flat) : 0;
   }
   std::vector<double> kinks() const override {
@@ -206,20 +206,15 @@ class Superposition : public Profile {
   virtual double second_moment_within(StickRadius c) const = 0;
 
  private:
-  /// c - b.
-  double distance_to_flat(StickRadius c) const {
-    return c.ratio < 0.5 ? c.ratio - shape_.flat : (1 - shape_.flat) - c.complement;
-  }
-
   /// Punches larger than c, for integrals over dx/sqrt(x^2 - r^2) with r = c - inward.
   Punches punches(StickRadius c, double inward) const {
-    const double distance = distance_to_flat(c);
+    const double distance = c.beyond(shape_.flat);
     if (distance >= 0)
       return {.low = c.ratio, .length = c.complement, .beyond_radius = inward, .beyond_flat = distance};
     return {.low = shape_.flat, .length = 1 - shape_.flat, .beyond_radius = inward - distance, .beyond_flat = 0};
   }
 
-  Front front(StickRadius c) const { return {c.ratio, std::max(0.0, -distance_to_flat(c))}; }
+  Front front(StickRadius c) const { return {c.ratio, std::max(0.0, -c.beyond(shape_.flat))}; }
 
   /// integral of f w/sqrt(x^2 - r^2), where f follows another power of x.
   template <class Function>
@@ -248,7 +243,7 @@ class Superposition : public Profile {
       if (t.ratio < kTiny) return 16 / (9 * pi * pi);
       return flat_punch_profile().moment_share(t).deficit / (t.ratio * t.ratio * t.ratio);
     });
-    const double inner = distance_to_flat(c) > 0 ? second_moment_within(c) : 0;
+    const double inner = c.beyond(shape_.flat) > 0 ? second_moment_within(c) : 0;
     return (inner + c.ratio * (c.ratio * (c.ratio * outer))) / shape_.second_moment;  // the cube could underflow
   }
 
@@ -318,7 +313,7 @@ class RoundedPunch final : public Superposition {
     return rounded_weight(x, beyond_flat, flat_) / norm_;
   }
   double second_moment_within(StickRadius c) const override {
-    return rounded_moment(flat_, c.ratio < 0.5 ? c.ratio - flat_ : (1 - flat_) - c.complement, 2) / norm_;
+    return rounded_moment(flat_, c.beyond(flat_), 2) / norm_;
   }
 
   double flat_;

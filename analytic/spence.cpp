@@ -173,10 +173,7 @@ class FrictionalPunch {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const bool sticks = i < mesh.stick_nodes();
-      if (sticks)
-        write_stick(i, matrix.row(row));
-      else
-        write_slip(i, matrix.row(row));
+      sticks ? write_stick(i, matrix.row(row)) : write_slip(i, matrix.row(row));
       right_side[row] = sticks ? beta_ / pi * logarithm(i) : friction_;
     }
     g_ = matrix.partialPivLu().solve(right_side);

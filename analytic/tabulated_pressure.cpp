@@ -194,9 +194,7 @@ class Tabulated final : public Profile {
     double from = 0;
     for (std::size_t i = piece_at(c.ratio); i < pieces_.size(); ++i) {
       const Piece& piece = pieces_[i];
-      // From whichever of c and 1 - c holds the digits.
-      const double beyond_c = c.ratio < 0.5 ? piece.high() - c.ratio : c.complement - (1 - piece.high());
-      const double end = std::sqrt(beyond_c * (piece.high() + c.ratio));
+      const double end = std::sqrt(-c.beyond(piece.high()) * (piece.high() + c.ratio));
       sum += over_panels(
           [&](double x) {
             const double rho = std::sqrt(c.ratio * c.ratio + x * x);

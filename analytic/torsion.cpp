@@ -3,7 +3,6 @@
 #include <limits>
 #include <numbers>
 
-#include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
@@ -109,15 +108,6 @@ StickRadius stick_from_deficit(double deficit, const Profile& profile) {
 /// By x = -ln c, in which H grows with the slope -c H'.
 StickRadius stick_beyond(double x) { return {.ratio = std::exp(-x), .complement = -std::expm1(-x)}; }
 
-/// H(c) - H(1), c = exp(-x). A little above a singular edge's H(1) the difference would lose its digits; the
-/// slope's integral keeps them.
-double twist_beyond_stick(double x, const Profile& profile) {
-  constexpr double kSmall = 0.1;
-  const double h = profile.twist_integral(stick_beyond(x));
-  if (h >= (1 + kSmall) * profile.edge()) return h - profile.edge();
-  return gsl::gauss_legendre([&](double y) { return profile.twist_slope(stick_beyond(y)); }, 0, x);
-}
-
 /// Whether the slip ring is too narrow for double precision. Where the bound is not zero at the edge, its
 /// width over a goes like the square of the load.
 bool is_too_narrow(double load, const Profile& profile) {
@@ -182,8 +172,9 @@ TorsionState from_twist(double twist, const Profile& profile) {
   }
   const double value = 2 * profile.load() * (twist - stuck);
   const StickRadius c = stick_beyond(solve(value, value / profile.twist_slope(kFull), -std::log(kMin), [&](double x) {
-    const double h = twist_beyond_stick(x, profile);
-    return Sample{.value = h, .power = x * profile.twist_slope(stick_beyond(x)) / h};
+    const StickRadius c = stick_beyond(x);
+    const double h = profile.twist_gain(c, kFull);
+    return Sample{.value = h, .power = x * profile.twist_slope(c) / h};
   }));
   TorsionState state = state_at(c, profile);
   state.twist = twist;
@@ -199,8 +190,7 @@ double traction(const TorsionState& state, double radius, const Profile& profile
     if (r == 1) out_of_range("r/a", r, "below 1: the traction is infinite at the edge");
     return state.moment_ratio / profile.full_stick() * profile.bonded_traction(r);
   }
-  // The front's distance, from whichever of c and 1 - c holds the digits.
-  const double inward = c.ratio < 0.5 ? c.ratio - r : (1 - r) - c.complement;
+  const double inward = c.beyond(r);
   if (inward > 0) return profile.stick_traction(c, r, inward);
   const double pressure = profile.pressure(r);
   if (!(pressure <= std::numeric_limits<double>::max())) out_of_range("r/a", r, "where the pressure is finite");

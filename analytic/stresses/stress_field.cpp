@@ -139,8 +139,8 @@ const std::vector<EndNode>& end_nodes() {
 class Discs {
  public:
   Discs(StickRadius low, StickRadius high, BodyPoint at) : low_(low), high_(high), depth_(at.depth) {
-    start_ = std::asinh(beyond(low, at.radius) / depth_);
-    const double middle = (start_ + std::asinh(beyond(high, at.radius) / depth_)) / 2;
+    start_ = std::asinh(low.beyond(at.radius) / depth_);
+    const double middle = (start_ + std::asinh(high.beyond(at.radius) / depth_)) / 2;
     const double gap = low.ratio < 0.5 ? high.ratio - low.ratio : low.complement - high.complement;
     length_ = 2 * std::asinh(gap / (2 * depth_ * std::cosh(middle)));
   }
@@ -168,9 +168,6 @@ class Discs {
   }
 
  private:
-  /// s - r, from whichever of s and 1 - s holds the digits.
-  static double beyond(StickRadius s, double r) { return s.ratio < 0.5 ? s.ratio - r : (1 - r) - s.complement; }
-
   Disc disc(double up, double down, double weight) const {
     const double u = start_ + up;
     const double above = 2 * depth_ * std::cosh(start_ + up / 2) * std::sinh(up / 2);
