@@ -36,13 +36,13 @@ _GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "
 _WANTED = (*_GIVEN, "moment", "tangent_stiffness")
 
 
-def _named(names: dict[str, Values]) -> tuple[int, npt.ArrayLike]:
-    """The given quantity of the state, and its values."""
-    given = [(name, values) for name, values in names.items() if values is not None]
+def _named(arguments: dict[str, Any]) -> tuple[str, Any]:
+    """The quantity that gives the state, among a function's arguments, and its values."""
+    names = [name for name in arguments if name in (*_GIVEN, "history")]
+    given = [(name, arguments[name]) for name in names if arguments[name] is not None]
     if len(given) != 1:
         raise InputError(f"{len(given)} of {', '.join(names)} are given; allowed: exactly one")
-    name, values = given[0]
-    return _GIVEN.index(name), values
+    return given[0]
 
 
 def _called(name: str, profile: str, before: Sequence[Any], array: Any, after: Sequence[Any], results: Any) -> Any:
@@ -59,9 +59,9 @@ def _numbers(name: str, profile: str, before: Sequence[Any], values: npt.ArrayLi
     return results if results.ndim else float(results)
 
 
-def _find(wanted: str, profile: str, names: dict[str, Values]) -> Any:
-    given, values = _named(names)
-    return _numbers("exact", profile, [given], values, _WANTED.index(wanted))
+def _find(wanted: str, arguments: dict[str, Any]) -> Any:
+    name, values = _named(arguments)
+    return _numbers("exact", arguments["profile"], [_GIVEN.index(name)], values, _WANTED.index(wanted))
 
 
 def twist(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -76,8 +76,7 @@ def twist(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_r
     Traceback (most recent call last):
     slipstick.errors.InputError: values[0]: M/M_lim = 1 is gross slip; allowed: 0 <= M/M_lim < 1
     """
-    return _find("twist", profile, {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
-                                    "stick_ratio": stick_ratio, "stick_complement": stick_complement})
+    return _find("twist", locals())
 
 
 def moment_ratio(twist: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -87,8 +86,7 @@ def moment_ratio(twist: Values = None, *, moment_deficit: Values = None, stick_r
     >>> round(moment_ratio(twist=0.1), 12) < 1
     True
     """
-    return _find("moment_ratio", profile, {"twist": twist, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                                           "stick_complement": stick_complement})
+    return _find("moment_ratio", locals())
 
 
 def moment(twist: Values = None, *, moment_ratio: Values = None, moment_deficit: Values = None,
@@ -100,8 +98,7 @@ def moment(twist: Values = None, *, moment_ratio: Values = None, moment_deficit:
     >>> round(moment(1e-9) / 1e-9, 6)
     5.333333
     """
-    return _find("moment", profile, {"twist": twist, "moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
-                                     "stick_ratio": stick_ratio, "stick_complement": stick_complement})
+    return _find("moment", locals())
 
 
 def stick_ratio(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_complement: Values = None,
@@ -111,16 +108,13 @@ def stick_ratio(moment_ratio: Values = None, *, moment_deficit: Values = None, s
     >>> round(stick_ratio(0.9), 6)
     0.495895
     """
-    return _find("stick_ratio", profile, {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
-                                          "stick_complement": stick_complement, "twist": twist})
+    return _find("stick_ratio", locals())
 
 
 def tangent_stiffness(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
                       stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
     """The tangent stiffness (dM/dphi)/(G a^3) of further loading: 16/3 (a_s/a)^3."""
-    return _find("tangent_stiffness", profile, {
-        "moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-        "stick_complement": stick_complement, "twist": twist})
+    return _find("tangent_stiffness", locals())
 
 
 def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -134,9 +128,8 @@ def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, s
     >>> round(energy_lost(m) / (3 / 16 * moment(moment_ratio=m)**3), 3)
     1.0
     """
-    given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                            "stick_complement": stick_complement, "twist": twist})
-    return _numbers("exact_energy_lost", profile, [given], values, relative_error)
+    name, values = _named(locals())
+    return _numbers("exact_energy_lost", profile, [_GIVEN.index(name)], values, relative_error)
 
 
 def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
@@ -148,10 +141,9 @@ def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_
     >>> bool(found.moment_ratio[1] == 0.9 and found.twist[1] > found.twist[0])
     True
     """
-    given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                            "stick_complement": stick_complement, "twist": twist})
+    name, values = _named(locals())
     array = _library.doubles(values)
-    return _called("exact_states", profile, [given], array, [], np.empty(array.shape, _library.STATE)).view(np.recarray)
+    return _called("exact_states", profile, [_GIVEN.index(name)], array, [], np.empty(array.shape, _library.STATE)).view(np.recarray)
 
 
 def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment_deficit: float | None = None,
@@ -165,30 +157,17 @@ def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment
     >>> bool(traction(0.8, 0.9) == pressure(0.8) and traction(0.8, history=[0.9, -0.9]) == -pressure(0.8))
     True
     """
-    names: dict[str, Values] = {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
-                                "stick_ratio": stick_ratio, "stick_complement": stick_complement, "twist": twist}
-    if history is not None and all(value is None for value in names.values()):
-        moments = _library.doubles(history).ravel()
+    name, value = _named(locals())
+    if name == "history":
+        moments = _library.doubles(value).ravel()
         return _numbers("exact_history_traction", profile, [moments.size, _library.address(moments)], radius)
-    given, value = _named({**names, "history": history})
-    return _numbers("exact_traction", profile, [given, float(np.asarray(value))], radius)
+    return _numbers("exact_traction", profile, [_GIVEN.index(name), float(np.asarray(value))], radius)
 
 
-def _state(names: dict[str, Values], history: npt.ArrayLike | None) -> tuple[int, Any]:
-    """The given quantity of the state and its value, or a history's moments."""
-    if history is not None and all(value is None for value in names.values()):
-        return 0, _library.doubles(history).ravel()
-    given, value = _named({**names, "history": history})
-    return given, _library.doubles(value).ravel()
-
-
-def _stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, state: tuple[int, Any], friction: float, poisson: float,
-              profile: str) -> np.recarray:
-    given, values = state
-    radii, depths = (_library.doubles(array) for array in np.broadcast_arrays(radius, depth))
-    before = [given, values.size, _library.address(values), friction, poisson]
-    found = np.empty(radii.shape, _library.STRESS)
-    return _called("exact_stresses", profile, before, radii, [_library.address(depths)], found).view(np.recarray)
+def _state(arguments: dict[str, Any]) -> tuple[int, Any]:
+    """The number of the quantity that gives the state and its value, or a history's moments."""
+    name, values = _named(arguments)
+    return 0 if name == "history" else _GIVEN.index(name), _library.doubles(values).ravel()
 
 
 def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | None = None, *,
@@ -208,9 +187,11 @@ def stresses(radius: npt.ArrayLike, depth: npt.ArrayLike, moment_ratio: float | 
     >>> axis.tresca.round(2)
     array([0.2 , 0.62])
     """
-    state = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                    "stick_complement": stick_complement, "twist": twist}, history)
-    return _stresses(radius, depth, state, friction, poisson, profile)
+    given, values = _state(locals())
+    radii, depths = (_library.doubles(array) for array in np.broadcast_arrays(radius, depth))
+    before = [given, values.size, _library.address(values), friction, poisson]
+    found = np.empty(radii.shape, _library.STRESS)
+    return _called("exact_stresses", profile, before, radii, [_library.address(depths)], found).view(np.recarray)
 
 
 _MEASURES = ("von_mises", "tresca", "tension")
@@ -228,8 +209,7 @@ def largest_stress(moment_ratio: float | None = None, *, moment_deficit: float |
     """
     if measure not in _MEASURES:
         raise InputError(f"measure = {measure!r}; allowed: {', '.join(_MEASURES)}")
-    given, values = _state({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
-                            "stick_complement": stick_complement, "twist": twist}, history)
+    given, values = _state(locals())
     found = np.empty(1, _library.LARGEST_STRESS)
     _library.checked(_library.function("exact_largest_stress")(
         _library.encoded(profile), given, values.size, _library.address(values), friction, poisson, _MEASURES.index(measure),
