@@ -67,6 +67,14 @@ def tolerance_study():
     return study(series={"coulomb": one("coulomb", 0.0), "paper": one("paper", 1e-4)})
 
 
+def changed(change, content=None):
+    """The content, or a study, with a change of each of its series."""
+    content = content or study()
+    for one in content["series"].values():
+        change(one)
+    return content
+
+
 def said(by, content):
     series = study_result.read(content)
     return by(series, study_result.main_quantities(series))
@@ -100,9 +108,7 @@ class Errors(unittest.TestCase):
         np.testing.assert_allclose(lines[0].get_ydata(), [64 / 64**2, 64 / 16**2])
 
     def test_no_line_through_what_turns(self):
-        content = study()
-        for one in content["series"].values():
-            one["order"]["twist_error"]["verdict"] = "oscillatory"
+        content = changed(lambda one: one["order"]["twist_error"].update(verdict="oscillatory"))
         self.assertEqual([line for line in self.panel(content).lines
                           if line.get_marker() == "None" and line.get_linestyle() in ("-", "--")], [])
 
@@ -117,9 +123,7 @@ class Errors(unittest.TestCase):
 
     def test_title_says_where_no_exact_answer_is_behind_the_error(self):
         self.assertEqual(self.panel().get_title(), "twist")
-        content = study()
-        for one in content["series"].values():
-            one["order"]["twist_error"] = order(basis="extrapolated")
+        content = changed(lambda one: one["order"].update(twist_error=order(basis="extrapolated")))
         self.assertEqual(self.panel(content).get_title(), "twist, from the extrapolated value")
 
     def test_no_order(self):
@@ -148,11 +152,8 @@ class Errors(unittest.TestCase):
 
     def test_the_size_of_the_errors_does_not_move_their_points(self):
         def heights(scale):
-            content = study()
-            for one in content["series"].values():
-                for mesh in one["meshes"]:
-                    mesh["twist_error"]["mean"] *= scale
-            axis = self.panel(content)
+            axis = self.panel(changed(lambda one: [mesh["twist_error"].update(mean=scale * mesh["twist_error"]["mean"])
+                                                   for mesh in one["meshes"]]))
             return np.log(10 * scale / np.array([8**2, 16**2]) / axis.get_ylim()[0]) / np.log(np.divide(*axis.get_ylim()))
 
         np.testing.assert_allclose(heights(1e-6), heights(1.0))
@@ -171,10 +172,7 @@ class Errors(unittest.TestCase):
         self.assertEqual(high, high_of_few)
 
     def test_a_spread_that_is_not_known_has_no_bar(self):
-        content = study()
-        for one in content["series"].values():
-            for mesh in one["meshes"]:
-                mesh["twist_error"]["spread"] = None
+        content = changed(lambda one: [mesh["twist_error"].update(spread=None) for mesh in one["meshes"]])
         for container in self.panel(content).containers:
             for bar in container.lines[2]:
                 for low, high in (segment[:, 1] for segment in bar.get_segments()):
@@ -195,9 +193,7 @@ class Errors(unittest.TestCase):
         for content in (study(series={}), {"name": "empty"}):
             with self.assertRaises(Unavailable):
                 study_figure.draw(content)
-        content = tolerance_study()
-        for one in content["series"].values():
-            del one["tolerances"]
+        content = changed(lambda one: one.pop("tolerances"), tolerance_study())
         with self.assertRaisesRegex(Unavailable, "nothing to compare"):
             study_figure.draw(content)
 
@@ -213,26 +209,19 @@ class Budget(unittest.TestCase):
         self.assertIn("The mesh error of the twist is at least 1.0×10⁵ times", study_figure.draw(study()).message)
 
     def test_message_says_what_is_too_large(self):
-        content = study()
-        for one in content["series"].values():
-            one["budget"][2]["iteration"] = 2e-4
+        content = changed(lambda one: one["budget"][2].update(iteration=2e-4))
         self.assertIn("On 1 of 4 meshes other parts of the error of the twist are above a tenth of the mesh’s, most of "
                       "all the iteration.", study_figure.draw(content).message)
 
     def test_a_tenth_is_not_above_a_tenth(self):
         for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"),
                                  (0.095, "The mesh error of the twist is at least"), (0.11, "On 4 of 4 meshes")):
-            content = study()
-            for one in content["series"].values():
-                for row in one["budget"]:
-                    row.update(discretisation=1.0, iteration=iteration, reference=0.0, rounding=0.0)
+            content = changed(lambda one: [row.update(discretisation=1.0, iteration=iteration, reference=0.0, rounding=0.0)
+                                           for row in one["budget"]])
             self.assertIn(words, said(study_figure.message, content))
 
     def test_details_say_how_many_grids_a_mesh_has_at_most(self):
-        content = study()
-        for one in content["series"].values():
-            one["meshes"][-1]["grids"] = 1
-        details = said(study_figure.details, content)
+        details = said(study_figure.details, changed(lambda one: one["meshes"][-1].update(grids=1)))
         self.assertIn("Points are means over 3 grids", details)
         self.assertIn("Cells of 15.6 to 125 mm.", details)
 
@@ -243,10 +232,7 @@ class Budget(unittest.TestCase):
         self.assertEqual(table.body[0][1:6], ["8×4", "−1.0×10⁻³", "−1.0×10⁻³", "−9.0×10⁻⁴", "−1.0×10⁻⁴"])
 
     def test_columns_without_numbers_are_left_out(self):
-        content = study()
-        for one in content["series"].values():
-            for row in one["budget"]:
-                row.update(trend=None, staircase=None)
+        content = changed(lambda one: [row.update(trend=None, staircase=None) for row in one["budget"]])
         self.assertEqual(len(tables.study_budget(content)[1].head), 7)
 
 
