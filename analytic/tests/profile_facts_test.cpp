@@ -56,6 +56,21 @@ TEST(AnyProfile, HasTheLoadOfItsPressure) {
   }
 }
 
+/// H(c) = integral_c^1 p(r)/sqrt(r^2 - c^2) dr, with r^2 = c^2 + (1 - c^2) sin(t)^2.
+TEST(AnyProfile, HasTheTwistOfItsDefinition) {
+  for (const auto& [profile, roughness] : every_profile())
+    for (const double c : {0.05, 0.5, 0.95}) {
+      const double end = std::sqrt((1 - c) * (1 + c));
+      const auto integrand = [&](double t) {
+        const double r = std::min(1.0, std::hypot(c, end * std::sin(t)));
+        return profile->pressure(r) * end * std::cos(t) / r;
+      };
+      EXPECT_NEAR(gsl::integral(integrand, 0, pi / 2) / profile->twist_integral(at(c)), 1,
+                  profile->kinks().empty() ? 1e-13 : 1e-9 * roughness)
+          << profile->name() << ", c = " << c;
+    }
+}
+
 TEST(AnyProfile, HasTheMomentOfItsTractions) {
   for (const auto& [each, roughness] : every_profile())
     for (const double c : {0.05, 0.5, 0.9}) {
