@@ -30,9 +30,7 @@ def only(*names):
 class WholePage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.output = Path(temporary.name)
+        cls.output = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         write_data(cls.output, small_page())
         cls.run_result = run_render(cls.output, save=save_quickly)
         cls.page = (cls.output / "index.html").read_text(encoding="utf-8")

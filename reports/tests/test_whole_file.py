@@ -20,9 +20,7 @@ from whole_file import write_whole  # noqa: E402
 
 class WholeFile(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.file = self.folder / "page.html"
 
     def names(self):

@@ -74,9 +74,7 @@ class Law(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.folder = Path(temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.files = {ending: cls.folder / f"law.{ending}" for ending in ("csv", "h", "py", "table", "inp", "xml", "sdf")}
         words = [word for file in cls.files.values() for word in ("--write", file)]
         cls.law = json.loads(program("law", SCENES / "paper.toml", "--json", "-", *words))

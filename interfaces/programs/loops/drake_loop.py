@@ -1,24 +1,19 @@
 """Drake: loads are imposed, since its friction depends on the rate. A contact point has no moment about its normal; hydroelastic contact
 has a patch, with the modulus that `slipstick law` writes."""
 
-import importlib.util
 import subprocess
 import tempfile
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
-from stepping import stepped
+from stepping import of_module
 
 STEP = 1e-3  # s
 
 
 def runs(sphere):
-    if not importlib.util.find_spec("pydrake"):
-        raise LookupError("this Python has no module pydrake")
     words = f"hydroelastic_modulus = {sphere.law['programs']['drake']['hydroelastic_modulus']:.5g}"
-    return version("drake"), [("its own: a point of contact", stepped(Engine, sphere, False)),
-                              (f"slipstick law: {words}", stepped(Engine, sphere, True))]
+    return of_module("pydrake", "drake", Engine, sphere, ("its own: a point of contact", False), (f"slipstick law: {words}", True))
 
 
 @cache

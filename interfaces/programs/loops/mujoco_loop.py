@@ -1,17 +1,12 @@
 """MuJoCo: loads are imposed, since its friction depends on the rate."""
 
-import importlib.util
-from importlib.metadata import version
-
-from stepping import stepped
+from stepping import of_module
 
 
 def runs(sphere):
-    if not importlib.util.find_spec("mujoco"):
-        raise LookupError("this Python has no module mujoco")
     words = " ".join(map(str, sphere.law["programs"]["mujoco"]["friction"]))
-    return version("mujoco"), [("its own: 1 0.005 0.0001", stepped(Engine, sphere, "")),
-                               (f"slipstick law: {words}", stepped(Engine, sphere, f'friction="{words}"'))]
+    return of_module("mujoco", "mujoco", Engine, sphere, ("its own: 1 0.005 0.0001", ""),
+                     (f"slipstick law: {words}", f'friction="{words}"'))
 
 
 class Engine:

@@ -1,20 +1,15 @@
 """Newton on the CPU, with its solver XPBD: loads are imposed, since its friction depends on the rate. A large inertia about the plane's
 axes keeps the sphere from rolling."""
 
-import importlib.util
-from importlib.metadata import version
-
-from stepping import stepped
+from stepping import of_module
 
 
 def runs(sphere):
-    if not importlib.util.find_spec("newton"):
-        raise LookupError("this Python has no module newton")
     mujoco = sphere.law["programs"]["mujoco"]["friction"]  # of the same form
     ours = {"mu": mujoco[0], "mu_torsional": mujoco[1]}
     words = ", ".join(f"{name} = {value:.5g}" for name, value in ours.items())
-    return version("newton"), [("its own: mu = 1, mu_torsional = 0.005", stepped(Engine, sphere, {})),
-                               (f"slipstick law: {words}", stepped(Engine, sphere, ours))]
+    return of_module("newton", "newton", Engine, sphere, ("its own: mu = 1, mu_torsional = 0.005", {}),
+                     (f"slipstick law: {words}", ours))
 
 
 class Engine:

@@ -1,20 +1,15 @@
 """PyBullet: loads are imposed, since its friction depends on the rate. A large inertia about the plane's axes keeps the sphere from
 rolling."""
 
-import importlib.util
-from importlib.metadata import version
-
-from stepping import stepped
+from stepping import of_module
 
 
 def runs(sphere):
-    if not importlib.util.find_spec("pybullet"):
-        raise LookupError("this Python has no module pybullet")
     mujoco = sphere.law["programs"]["mujoco"]["friction"]  # of the same form
     ours = {"lateralFriction": mujoco[0], "spinningFriction": mujoco[1]}
     words = ", ".join(f"{name} = {value:.5g}" for name, value in ours.items())
-    return version("pybullet"), [("its own: lateralFriction = 0.5", stepped(Engine, sphere, {"lateralFriction": 0.5})),
-                                 (f"slipstick law: {words}", stepped(Engine, sphere, ours))]
+    return of_module("pybullet", "pybullet", Engine, sphere, ("its own: lateralFriction = 0.5", {"lateralFriction": 0.5}),
+                     (f"slipstick law: {words}", ours))
 
 
 class Engine:

@@ -4,6 +4,8 @@ An engine is one sphere at rest on the ground, of a given mass in kg, that can m
 normal. It has `step_size`, and step(normal_load, moment, force), which takes one step under these loads and returns twist and displacement
 so far."""
 
+from importlib.metadata import version
+from importlib.util import find_spec
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +14,13 @@ STEP = 1e-6  # s, of granular programs
 SERVO_STEPS = 40
 SETTLED = 3000  # steps until it rests
 LIGHT, HEAVY = 1.0, 1000.0  # kg; a heavy one keeps its rate against friction
+
+
+def of_module(module, package, engine, sphere, *frictions):
+    """The version of a simulator that is a Python module, and its runs: frictions have a name each, and an argument of the engine."""
+    if not find_spec(module):
+        raise LookupError(f"this Python has no module {module}")
+    return version(package), [(name, stepped(engine, sphere, own)) for name, own in frictions]
 
 
 def stepped(engine, sphere, *arguments):

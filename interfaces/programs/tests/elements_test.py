@@ -95,9 +95,7 @@ class OfMeshes(unittest.TestCase):
 
 class OfFiles(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="slipstick-elements-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="slipstick-elements-")))
 
     def test_hold_the_field(self):
         plan = PLANS["sector"].within(0.25)

@@ -31,9 +31,7 @@ class CountingExecutor(ProcessPoolExecutor):
 
 class ExecutorTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         (self.folder / "scene.toml").write_text(toml_text(scenes.SPHERE))
         (self.folder / "study.toml").write_text('name = "small"\nscene = "scene.toml"\ncells = [12, 16, 24]\n')
         (self.folder / "gates.toml").write_text('[[gate]]\nid = "tight"\nscene = "scene.toml"\nset = { "grid.cells" = [16, 16] }\n'

@@ -156,9 +156,7 @@ class CheckTest(unittest.TestCase):
 
 class FilesTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         (self.folder / "scene.toml").write_text(toml_text(SPHERE))
 
     def test_gates(self):

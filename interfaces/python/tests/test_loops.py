@@ -44,9 +44,7 @@ def masing(path, law):
 class Loops(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.folder = Path(temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
 
     def write(self, path, moments, load=LOAD, noise=0.0, seed=1, time=True, moment_unit=1.0, rotation_unit=1.0):
         """Rows of time, moment, rotation in SI units, or in others."""
