@@ -16,12 +16,14 @@ from slipstick.meshes.read import read
 from slipstick.meshes.surface import nodal_areas
 from slipstick.meshes.units import in_units_of
 
+POINTS, CELLS = MESHES["polar"]
+PRESSURE, TRACTION = solution(POINTS)
+CENTRES = np.concatenate([POINTS[nodes].mean(axis=1) for _, nodes in CELLS])
+
 
 def columns_of(names):
     """The exact solution at the nodes of the polar mesh, as a dict of columns with these names."""
-    points, _ = MESHES["polar"]
-    pressure, traction = solution(points)
-    return dict(zip(names.split(), [*points.T, pressure, *traction.T]))
+    return dict(zip(names.split(), [*POINTS.T, PRESSURE, *TRACTION.T]))
 
 
 class ReadTest(unittest.TestCase):
@@ -48,9 +50,7 @@ class ReadTest(unittest.TestCase):
 
 class TableTest(ReadTest):
     def table(self, name="nodes.csv", header="x1,x2,pressure,q1,q2", separator=",", more=(), length=1.0, stress=1.0):
-        points, _ = MESHES["polar"]
-        pressure, traction = solution(points)
-        rows = np.column_stack([points / length, pressure / stress, traction / stress, *more])
+        rows = np.column_stack([POINTS / length, PRESSURE / stress, TRACTION / stress, *more])
         lines = [separator.join(f"{value:.12e}" for value in row) for row in rows]
         return self.file(name, "\n".join([header, *lines]) + "\n")
 
@@ -82,8 +82,7 @@ class TableTest(ReadTest):
         self.assert_refused('column x1: unit "acre"; allowed', self.table(header="x1 [acre],x2,pressure,q1,q2"))
 
     def test_rows_with_areas_are_points(self):
-        points, cells = MESHES["polar"]
-        areas = nodal_areas([nodes for _, nodes in cells], points)
+        areas = nodal_areas([nodes for _, nodes in CELLS], POINTS)
         path = self.table(header="x1 [mm],x2 [mm],pressure [Pa],q1,q2,area", more=[areas * 1e6], length=1e-3)
         field = read(path)
         self.assertEqual(field.kind, "points")
@@ -91,11 +90,9 @@ class TableTest(ReadTest):
         self.assertEqual(read(path, kind="faces").kind, "faces")
 
     def test_forces(self):
-        points, cells = MESHES["polar"]
-        pressure, traction = solution(points)
-        areas = nodal_areas([nodes for _, nodes in cells], points)
-        forces = {"x1": points[:, 0], "x2": points[:, 1], "f1": traction[:, 0] * areas, "f2": traction[:, 1] * areas,
-                  "fn": pressure * areas}
+        areas = nodal_areas([nodes for _, nodes in CELLS], POINTS)
+        forces = {"x1": POINTS[:, 0], "x2": POINTS[:, 1], "f1": TRACTION[:, 0] * areas, "f2": TRACTION[:, 1] * areas,
+                  "fn": PRESSURE * areas}
         for table in (forces, {**forces, "area": areas}):
             field = read(table)
             self.assertEqual(field.kind, "forces")
@@ -128,11 +125,9 @@ class TableTest(ReadTest):
         self.assert_refused('it has no column "mine:2"', {**columns, "mine": vectors}, names={"q1": "mine:2"})
 
     def test_planes_of_points_in_space(self):
-        points, _ = MESHES["polar"]
-        pressure, traction = solution(points)
-        zero = 0 * pressure
-        table = {"x": points[:, 1], "y": zero + 3.0, "z": points[:, 0], "p": pressure, "tx": traction[:, 1], "ty": zero,
-                 "tz": traction[:, 0]}
+        zero = 0 * PRESSURE
+        table = {"x": POINTS[:, 1], "y": zero + 3.0, "z": POINTS[:, 0], "p": PRESSURE, "tx": TRACTION[:, 1], "ty": zero,
+                 "tz": TRACTION[:, 0]}
         field = read(table)  # normal y: x1 = z, x2 = x
         self.assert_exact(field)
         self.assertIn("the contact's normal is y", " ".join(field.said))
@@ -185,13 +180,12 @@ class MeshTest(ReadTest):
                 self.assertAlmostEqual(nodal_areas(field.faces, field.vertices).sum() / ConvexHull(points).volume, 1, places=9)
 
     def test_vtu_encodings(self):
-        points, cells = MESHES["polar"]
-        expected = read(self.file("m.vtu", vtu(points, cells, self.point_data(points), {})))
+        expected = read(self.file("m.vtu", vtu(POINTS, CELLS, self.point_data(POINTS), {})))
         for form in ("binary", "raw", "base64"):
             for compressor in (None, *COMPRESSORS):
                 for header, pieces in (("<u4", 1), ("<u8", 1), ("<u4", 3)):
                     with self.subTest(form=form, compressor=compressor, header=header, pieces=pieces):
-                        content = vtu(points, cells, self.point_data(points), {}, form, compressor, header, pieces)
+                        content = vtu(POINTS, CELLS, self.point_data(POINTS), {}, form, compressor, header, pieces)
                         field = read(self.file("m.vtu", content))
                         self.assert_exact(field)
                         if pieces == 1:
@@ -199,16 +193,14 @@ class MeshTest(ReadTest):
                         self.assertEqual(sum(map(len, field.faces)), sum(map(len, expected.faces)))
 
     def test_cell_data(self):
-        points, cells = MESHES["polar"]
-        centres = np.concatenate([points[nodes].mean(axis=1) for _, nodes in cells])
-        pressure, traction = solution(centres)
+        pressure, traction = solution(CENTRES)
         data = {"pressure": pressure, "shear": np.pad(traction, ((0, 0), (0, 1)))}
-        field = read(self.file("m.vtu", vtu(points, cells, self.point_data(points), data)))
+        field = read(self.file("m.vtu", vtu(POINTS, CELLS, self.point_data(POINTS), data)))
         self.assertEqual(field.kind, "faces")
         self.assert_exact(field)
-        self.assertAlmostEqual(field.area.sum() / ConvexHull(points).volume, 1, places=9)
+        self.assertAlmostEqual(field.area.sum() / ConvexHull(POINTS).volume, 1, places=9)
         self.assertEqual(read(self.folder / "m.vtu", kind="nodes").kind, "nodes")
-        field = read(self.file("p.vtu", vtu(points, cells, self.point_data(points), {"pressure": pressure})))
+        field = read(self.file("p.vtu", vtu(POINTS, CELLS, self.point_data(POINTS), {"pressure": pressure})))
         self.assertEqual(field.kind, "nodes")  # without the shear of cells
 
     @unittest.skipUnless(shutil.which("ccx"), "CalculiX is not installed")
@@ -302,32 +294,28 @@ class MeshTest(ReadTest):
     @unittest.skipUnless(importlib.util.find_spec("meshio") and importlib.util.find_spec("h5py"), "no meshio or h5py")
     def test_last_step_of_a_series(self):
         import meshio
-        points, cells = MESHES["polar"]
         with meshio.xdmf.TimeSeriesWriter(self.folder / "s.xdmf", data_format="XML") as series:
-            series.write_points_cells(points, cells)
+            series.write_points_cells(POINTS, CELLS)
             for time in (0.0, 1.0):
-                series.write_data(time, point_data={key: time * array for key, array in self.point_data(points).items()})
+                series.write_data(time, point_data={key: time * array for key, array in self.point_data(POINTS).items()})
         self.assert_exact(read(self.folder / "s.xdmf"))
 
     @unittest.skipUnless(importlib.util.find_spec("netCDF4"), "netCDF4 is not installed")
     def test_last_step_of_exodus(self):
-        points, cells = MESHES["polar"]
-        centres = [points[nodes].mean(axis=1) for _, nodes in cells]
-        values = [np.column_stack(solution(at)) for at in (points, *centres)]
+        centres = [POINTS[nodes].mean(axis=1) for _, nodes in CELLS]
+        values = [np.column_stack(solution(at)) for at in (POINTS, *centres)]
         for form in ("NETCDF3_64BIT_OFFSET", "NETCDF4"):
-            write_exodus(self.folder / "r.e", form, points, cells, ("contact_pressure", "t1", "t2"), values)
+            write_exodus(self.folder / "r.e", form, POINTS, CELLS, ("contact_pressure", "t1", "t2"), values)
             for kind in ("nodes", "faces"):
                 field = read(self.folder / "r.e", kind=kind)
-                self.assertEqual(len(field.points), len(points) if kind == "nodes" else sum(map(len, centres)))
+                self.assertEqual(len(field.points), len(POINTS) if kind == "nodes" else sum(map(len, centres)))
                 self.assert_exact(field)
 
     def test_objects_of_pyvista(self):
-        points, cells = MESHES["polar"]
-        flat = np.concatenate([np.insert(nodes, 0, nodes.shape[1], axis=1).ravel() for _, nodes in cells])
-        kinds = np.concatenate([np.full(len(nodes), VTK_TYPES[name]) for name, nodes in cells])
-        centres = np.concatenate([points[nodes].mean(axis=1) for _, nodes in cells])
-        at_cells = dict(zip(("pressure", "q1", "q2"), np.column_stack(solution(centres)).T))
-        common = {"points": np.pad(points, ((0, 0), (0, 1))), "point_data": self.point_data(points), "cell_data": at_cells}
+        flat = np.concatenate([np.insert(nodes, 0, nodes.shape[1], axis=1).ravel() for _, nodes in CELLS])
+        kinds = np.concatenate([np.full(len(nodes), VTK_TYPES[name]) for name, nodes in CELLS])
+        at_cells = dict(zip(("pressure", "q1", "q2"), np.column_stack(solution(CENTRES)).T))
+        common = {"points": np.pad(POINTS, ((0, 0), (0, 1))), "point_data": self.point_data(POINTS), "cell_data": at_cells}
         grid = types.SimpleNamespace(**common, cells=flat, celltypes=kinds)
         surface = types.SimpleNamespace(**common, faces=flat, n_verts=0, n_lines=0)
         for source in (grid, surface):
@@ -340,9 +328,8 @@ class MeshTest(ReadTest):
         self.assert_refused("do not belong together", grid)
 
     def test_vtk_collections(self):
-        points, cells = MESHES["polar"]
-        self.file("late.vtu", vtu(points, cells, self.point_data(points), {}))
-        self.file("early.vtu", vtu(points, cells, {key: 0 * array for key, array in self.point_data(points).items()}, {}))
+        self.file("late.vtu", vtu(POINTS, CELLS, self.point_data(POINTS), {}))
+        self.file("early.vtu", vtu(POINTS, CELLS, {key: 0 * array for key, array in self.point_data(POINTS).items()}, {}))
         head = '<?xml version="1.0"?><VTKFile type="{0}"><{0}>{1}</{0}></VTKFile>'
         steps = '<DataSet timestep="10" file="late.vtu"/><DataSet timestep="9" file="early.vtu"/>'
         self.assert_exact(read(self.file("all.pvd", head.format("Collection", steps))))
@@ -360,31 +347,28 @@ class MeshTest(ReadTest):
         self.assert_exact(read(self.file("m.vtp", text.replace(b"Cells>", b"Polys>"))))
 
     def test_planes_in_space(self):
-        points, cells = MESHES["polar"]
-        pressure, traction = solution(points)
         slope = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]])  # x1, x2, x3 as rows: normal between x and z
         for frame, options in ((np.eye(3), {}), (np.eye(3)[[1, 2, 0]], {}), (np.eye(3)[[2, 0, 1]], {}), (slope, {}),
                                (np.diag([1.0, -1.0, -1.0]), {"axis": "-z"}), (slope, {"axis": "0.6,0,0.8"})):
             with self.subTest(frame=frame):
-                data = {"pressure": pressure, "shear": traction @ frame[:2]}
-                self.assert_exact(read(self.file("m.vtu", vtu(points @ frame[:2], cells, data, {})), **options))
-                data = {"contact_traction": traction @ frame[:2] - pressure[:, None] * frame[2]}  # on the lower body
+                data = {"pressure": PRESSURE, "shear": TRACTION @ frame[:2]}
+                self.assert_exact(read(self.file("m.vtu", vtu(POINTS @ frame[:2], CELLS, data, {})), **options))
+                data = {"contact_traction": TRACTION @ frame[:2] - PRESSURE[:, None] * frame[2]}  # on the lower body
                 for sign in (1, -1):  # and on the upper one
                     data = {key: sign * array for key, array in data.items()}
-                    self.assert_exact(read(self.file("m.vtu", vtu(points @ frame[:2], cells, data, {})), **options))
+                    self.assert_exact(read(self.file("m.vtu", vtu(POINTS @ frame[:2], CELLS, data, {})), **options))
 
     def test_refusals_of_meshes(self):
-        points, cells = MESHES["polar"]
-        data = self.point_data(points)
+        data = self.point_data(POINTS)
 
-        def written(where=points, **arrays):
-            return self.file("m.vtu", vtu(where, cells, arrays, {}))
+        def written(where=POINTS, **arrays):
+            return self.file("m.vtu", vtu(where, CELLS, arrays, {}))
         self.assert_refused("no array is named like a pressure; it has the point arrays 'stress'", written(stress=data["CPRESS"]))
         self.assert_refused('it has no point array "p0"', written(**data), names={"pressure": "p0"})
         self.assert_refused('names: "pres"; allowed: x1', written(**data), names={"pres": "CPRESS"})
-        bowl = np.column_stack([points, 0.5 * (points**2).sum(axis=1) / RADIUS])
+        bowl = np.column_stack([POINTS, 0.5 * (POINTS**2).sum(axis=1) / RADIUS])
         self.assert_refused("the contact's surface is curved", written(bowl, **data))
-        raw = vtu(points, cells, data, {}, "raw", "vtkZLibDataCompressor")
+        raw = vtu(POINTS, CELLS, data, {}, "raw", "vtkZLibDataCompressor")
         start = raw.index(b'raw">_')
         self.assert_refused("it is damaged", self.file("d.vtu", raw[:start + 50] + raw[start + 90:]))
         self.assert_refused("it is no whole XML file", self.file("cut.vtu", written(**data).read_bytes()[:-50]))
