@@ -60,8 +60,6 @@ ComplexBall pressure_by_v(const Law& law, const ComplexBall& v, const ComplexBal
   switch (law.kind) {
     case Kind::flat_punch:
       return 1;
-    case Kind::hertz:
-      return v * v;
     case Kind::cone: {
       const ComplexBall inverse = (1 + v) / rho;  // arcosh(1/rho) = log((1 + v)/rho)
       if (analytic && inverse.touches_cut()) return ComplexBall::indeterminate();

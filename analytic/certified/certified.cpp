@@ -32,7 +32,6 @@ struct Balls {
 }
 
 Rational read_exponent(const Profile& profile) {
-  if (profile.kind == Kind::hertz) return 2;
   if (profile.kind == Kind::cone) return 1;
   if (profile.kind == Kind::flat_punch || profile.kind == Kind::constant) return 0;  // have no exponent
   const Rational n = read_exactly("exponent n", profile.exponent);

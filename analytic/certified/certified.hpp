@@ -13,9 +13,9 @@ struct Number {
   std::string radius;
 };
 
-/// The friction: mu times the pressure of a sphere, a cone, a flat punch, or a gap that grows like r^n; or
-/// the same everywhere.
-enum class Kind { hertz, cone, flat_punch, power, constant };
+/// The friction: mu times the pressure of a cone, a flat punch, or a gap that grows like r^n (2: a sphere); or the same
+/// everywhere.
+enum class Kind { cone, flat_punch, power, constant };
 
 struct Profile {
   Kind kind;

@@ -9,7 +9,7 @@ namespace slipstick::analytic::certified {
 
 Profile profile_named(const std::string& name) {
   const std::string power = "power:";
-  if (name == "hertz") return {.kind = Kind::hertz};
+  if (name == "hertz") return {.kind = Kind::power, .exponent = "2"};
   if (name == "cone") return {.kind = Kind::cone};
   if (name == "flat_punch") return {.kind = Kind::flat_punch};
   if (name == "constant") return {.kind = Kind::constant};
