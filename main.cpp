@@ -21,6 +21,9 @@
 
 namespace {
 
+using namespace slipstick;
+using solver::Ranks;
+
 constexpr int kCouldNotJudge = 2;
 
 using Json = nlohmann::ordered_json;
@@ -30,18 +33,13 @@ using Command = std::function<int(std::ostream&, Json&)>;
 void write_json(const std::string& path, const Json& result) {
   // Names of files need not be UTF-8; JSON is. On standard output, perhaps a terminal, it is ASCII.
   const std::string text = result.dump(2, ' ', path == "-", Json::error_handler_t::replace);
-  if (path == "-") return slipstick::convergence::write_standard_output(text + "\n");
-  slipstick::convergence::write_option_file("--json", path, text + "\n");
+  if (path == "-") return convergence::write_standard_output(text + "\n");
+  convergence::write_option_file("--json", path, text + "\n");
 }
-
-using slipstick::convergence::failure_text;
-using slipstick::convergence::plain_text;
-using slipstick::solver::JoinedRanks;
-using slipstick::solver::Ranks;
 
 /// Ranks that fail, fail alike: one of them says so.
 void complain(const std::exception& error, const Ranks& ranks) {
-  if (ranks.first()) std::cerr << plain_text("slipstick: " + failure_text(error)) << '\n';
+  if (ranks.first()) std::cerr << convergence::plain_text("slipstick: " + convergence::failure_text(error)) << '\n';
 }
 
 /// Best-effort write before an error is rethrown.
@@ -57,13 +55,13 @@ void keep(const std::function<void()>& write, const Ranks& ranks) {
 /// the exit code.
 int run_command(const Command& command, const CLI::App& parsed, const std::string& json_path, bool quiet,
                 const Ranks& ranks) {
-  slipstick::convergence::require_inputs_kept(parsed);
-  if (json_path != "-") slipstick::convergence::require_output("--json", json_path);
+  convergence::require_inputs_kept(parsed);
+  if (json_path != "-") convergence::require_output("--json", json_path);
   std::ostringstream text;
   Json result;
   const auto write_text = [&] {
     if (quiet || !ranks.first() || json_path == "-") return;
-    slipstick::convergence::write_standard_output(plain_text(text.str()));
+    convergence::write_standard_output(convergence::plain_text(text.str()));
   };
   // The file first: a reader of the text may leave, and so end this process.
   const auto write_out = [&] {
@@ -89,7 +87,6 @@ int run_command(const Command& command, const CLI::App& parsed, const std::strin
 /// Adds the command that the line begins with. Where it begins with none, adds all of them, for --help, for
 /// misspelled commands and for the reference. Building every command's options doubles the start-up time.
 std::vector<Command> add_commands(CLI::App& app, std::string_view first_word, const Ranks& ranks) {
-  using namespace slipstick;
   const auto add_solve = [&ranks](CLI::App& to) { return convergence::add_solve_command(to, ranks); };
   const std::vector<std::pair<std::string_view, std::function<Command(CLI::App&)>>> all{
       {"exact", analytic::add_exact_command},
@@ -130,17 +127,17 @@ int run(int argc, char** argv, const Ranks& ranks) {
     subcommand->add_flag("--quiet", quiet, "print no result text");
   }
 
-  slipstick::convergence::require_command(app, argc, argv);
+  convergence::require_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) slipstick::convergence::require_known_options(app, argc, argv);
+    if (error.get_exit_code() != 0) convergence::require_known_options(app, argc, argv);
     std::ostringstream output;
     std::ostringstream errors;
     const int left = app.exit(error, output, errors);
     if (ranks.first()) {
-      std::cerr << plain_text(errors.str());
-      slipstick::convergence::write_standard_output(output.str());
+      std::cerr << convergence::plain_text(errors.str());
+      convergence::write_standard_output(output.str());
     }
     return left == 0 ? 0 : kCouldNotJudge;
   }
@@ -154,13 +151,13 @@ int run(int argc, char** argv, const Ranks& ranks) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  slipstick::convergence::hold_standard_streams();
-  slipstick::solver::prepare_heap();
+  convergence::hold_standard_streams();
+  solver::prepare_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
-    slipstick::convergence::die_with_parent(argc, argv);
+    convergence::die_with_parent(argc, argv);
     // Other commands do not share their work: each process does all of it.
-    std::optional<JoinedRanks> joined;
+    std::optional<solver::JoinedRanks> joined;
     if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) joined.emplace();
     const Ranks ranks = joined ? joined->ranks() : Ranks();
     int exit_code = kCouldNotJudge;
@@ -169,7 +166,7 @@ int main(int argc, char** argv) {
       exit_code = run(argc, argv, ranks);
     } catch (const std::exception& error) {
       complain(error, ranks);
-      failure = failure_text(error);
+      failure = convergence::failure_text(error);
     }
     if (joined) joined->end(exit_code, failure);
     return exit_code;
