@@ -34,10 +34,10 @@ Json exact_fields(const Oracle& exact) {
 
 /// The exact answer after the last step; null: there is none, or none of the tractions.
 Json exact_json(const solver::Scene& scene) {
-  const auto history = exact_history(scene);
+  auto history = exact_history(scene);
   OracleAnswer answer;
   const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
-  for (std::size_t k = 0; k < steps; ++k) answer = history->advance(step_of(scene, k));
+  for (std::size_t k = 0; k < steps; ++k) answer = history.advance(step_of(scene, k));
   if (!answer.oracle || !answer.oracle->shear || !std::isfinite(answer.oracle->moment)) return nullptr;
   const Oracle& exact = *answer.oracle;
   Json json = exact_fields(exact);

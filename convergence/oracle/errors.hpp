@@ -7,7 +7,6 @@
 
 #include "convergence/oracle/oracle.hpp"
 #include "solver/solution.hpp"
-#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 

@@ -24,11 +24,11 @@ std::array<double, solver::kStresses> in_axes(const analytic::PressureStress& p,
 }  // namespace
 
 std::optional<ExactStresses> exact_stresses(const solver::Scene& scene, solver::Body body, std::string& reason) {
-  const auto theory = exact_history(scene);
+  auto theory = exact_history(scene);
   std::optional<analytic::LoadingHistory> history;
   OracleAnswer answer;
   for (std::size_t k = 0; k < scene.steps.size() * static_cast<std::size_t>(scene.cycles); ++k) {
-    answer = theory->advance(step_of(scene, k));
+    answer = theory.advance(step_of(scene, k));
     reason = answer.oracle ? answer.oracle->only_normal : answer.reason;
     if (!reason.empty()) return std::nullopt;
     reason = "no exact stresses are known here under a tangential force or where pressing slips";

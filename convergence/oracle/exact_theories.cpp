@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -121,7 +120,7 @@ class Indentation {
 };
 
 /// Torsion under a constant normal load: first loading, then Masing's rule.
-class TorsionHistory final : public ExactHistory {
+class TorsionHistory {
  public:
   TorsionHistory(const Indentation& indentation, double normal_load)
       : contact_(indentation.pressed(normal_load)),
@@ -130,8 +129,7 @@ class TorsionHistory final : public ExactHistory {
                         (indentation.pair().shear * contact_.contact_radius * contact_.contact_radius)},
         history_(*contact_.friction.bound) {}
 
- private:
-  OracleAnswer follow(const solver::Step& step) override {
+  OracleAnswer operator()(const solver::Step& step) {
     try {
       return {first_ ? load_first(step.torsion) : load_on(step.torsion), ""};
     } catch (const std::domain_error& error) {
@@ -143,6 +141,7 @@ class TorsionHistory final : public ExactHistory {
     }
   }
 
+ private:
   double ratio_of(const solver::TorsionLoad& load) const {
     const auto ratio = solver::value_if<solver::MomentRatio>(load);
     return ratio ? *ratio : std::get<solver::Moment>(load).value / contact_.friction.moment_limit;
@@ -216,7 +215,7 @@ class TorsionHistory final : public ExactHistory {
 };
 
 /// A tangential force along one line, under any normal loads.
-class ForceHistory final : public ExactHistory {
+class ForceHistory {
  public:
   /// first_load: the scale of loads.
   ForceHistory(Indentation indentation, double first_load, double exponent, const std::array<double, 2>& direction)
@@ -227,8 +226,7 @@ class ForceHistory final : public ExactHistory {
         indenter_(exponent),
         history_(indenter_) {}
 
- private:
-  OracleAnswer follow(const solver::Step& step) override {
+  OracleAnswer operator()(const solver::Step& step) {
     const double unit = indentation_.friction() * load_;
     const double force = step.force[0] * direction_[0] + step.force[1] * direction_[1];
     try {
@@ -255,6 +253,7 @@ class ForceHistory final : public ExactHistory {
     return {oracle, ""};
   }
 
+ private:
   /// A first loading has all its digits, however small the force.
   analytic::tangential::HistoryState state_under(double force) {
     analytic::tangential::HistoryState state = history_.state();
@@ -276,106 +275,33 @@ class ForceHistory final : public ExactHistory {
   double dissipated_ = 0.0;
 };
 
-/// Dissimilar bodies pressed together, more and more: the stick ratio is the same throughout.
-class FrictionalIndentation final : public ExactHistory {
- public:
-  explicit FrictionalIndentation(const solver::Scene& scene)
-      : indentation_(scene), full_(scene.contact.coupling == solver::Coupling::full) {
-    const double beta = 0.5 * indentation_.pair().effective * (mismatch(scene.lower) - mismatch(scene.upper));
-    stick_ratio_ = full_ ? analytic::spence_contact(scene.contact.friction.coefficient, beta).stick_ratio
-                         : analytic::goodman_stick_radius(scene.contact.friction.coefficient, beta).ratio;
-  }
+/// Hertz's elliptic contact under a load, whatever friction does: only gross slip has an exact solution.
+Oracle pressed_ellipse_under(double load, const solver::Surface& surface, const Moduli& pair, double friction) {
+  const analytic::HertzEllipse contact =
+      analytic::hertz_ellipse(load, surface.radius_1, surface.radius_2, pair.effective);
+  Oracle oracle{};
+  oracle.normal.profile = analytic::find_profile("hertz").profile;
+  oracle.place.centre = surface.at;
+  oracle.place.axis_ratio = contact.semi_axis_1 / contact.semi_axis_2;
+  oracle.place.angle = surface.angle;
+  oracle.contact_radius = std::sqrt(contact.semi_axis_1 * contact.semi_axis_2);
+  oracle.normal.reference_pressure = contact.peak_pressure;
+  oracle.normal.peak_pressure = contact.peak_pressure;
+  oracle.normal.approach = contact.approach;
+  oracle.friction.bound = oracle.normal.profile;
+  oracle.friction.reference_bound = friction * contact.peak_pressure;
+  oracle.friction.force = friction * load;
+  oracle.friction.moment_limit = oracle.friction.force * contact.friction_arm;
+  oracle.relative_uncertainty = kUncertainty;
+  return oracle;
+}
 
- private:
-  OracleAnswer follow(const solver::Step& step) override {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    Oracle oracle = indentation_.pressed(*step.normal);
-    oracle.state.stick_ratio = stick_ratio_;
-    oracle.stick_radius = stick_ratio_ * oracle.contact_radius;
-    oracle.dissipated = unknown;
-    if (full_) {  // shear has its part in the pressure
-      oracle.relative_uncertainty = kSpenceUncertainty;
-      oracle.contact_radius = oracle.stick_radius = oracle.normal.approach = oracle.normal.peak_pressure = unknown;
-      oracle.normal.reference_pressure = oracle.friction.moment_limit = unknown;
-    }
-    return {oracle, ""};
-  }
-
-  Indentation indentation_;
-  bool full_;
-  double stick_ratio_ = 0.0;
-};
-
-/// Hertz's elliptic contact, whatever friction does: only gross slip has an exact solution.
-class PressedEllipse final : public ExactHistory {
- public:
-  explicit PressedEllipse(const solver::Scene& scene)
-      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.contact.friction.coefficient) {}
-
- private:
-  OracleAnswer follow(const solver::Step& step) override {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    constexpr std::array unknown_pair{unknown, unknown};
-    Oracle oracle = pressed(*step.normal);
-    oracle.moment = moment_of(step.torsion, oracle.friction.moment_limit);
-    oracle.twist_angle = solver::value_if<solver::Twist>(step.torsion).value_or(unknown);
-    oracle.force = step.displacement ? unknown_pair : step.force;
-    oracle.displacement = step.displacement.value_or(unknown_pair);
-    oracle.stick_radius = oracle.dissipated = unknown;
-    oracle.state = {.moment_ratio = oracle.moment / oracle.friction.moment_limit,
-                    .moment_deficit = 1.0 - std::abs(oracle.moment) / oracle.friction.moment_limit,
-                    .stick_ratio = unknown,
-                    .stick_complement = unknown,
-                    .twist = oracle.twist_angle * pair_.shear * oracle.contact_radius * oracle.contact_radius /
-                             (friction_ * *step.normal),
-                    .moment = oracle.moment / (friction_ * *step.normal * oracle.contact_radius),
-                    .tangent_stiffness = unknown};
-    oracle.only_normal =
-        "normal contact only: no exact solution with friction is known here for shape = \"ellipsoid\" with "
-        "two different radii";
-    return {oracle, ""};
-  }
-
-  Oracle pressed(double load) const {
-    const analytic::HertzEllipse contact =
-        analytic::hertz_ellipse(load, surface_.radius_1, surface_.radius_2, pair_.effective);
-    Oracle oracle{};
-    oracle.normal.profile = analytic::find_profile("hertz").profile;
-    oracle.place.centre = surface_.at;
-    oracle.place.axis_ratio = contact.semi_axis_1 / contact.semi_axis_2;
-    oracle.place.angle = surface_.angle;
-    oracle.contact_radius = std::sqrt(contact.semi_axis_1 * contact.semi_axis_2);
-    oracle.normal.reference_pressure = contact.peak_pressure;
-    oracle.normal.peak_pressure = contact.peak_pressure;
-    oracle.normal.approach = contact.approach;
-    oracle.friction.bound = oracle.normal.profile;
-    oracle.friction.reference_bound = friction_ * contact.peak_pressure;
-    oracle.friction.force = friction_ * load;
-    oracle.friction.moment_limit = oracle.friction.force * contact.friction_arm;
-    oracle.relative_uncertainty = kUncertainty;
-    return oracle;
-  }
-
-  static double moment_of(const solver::TorsionLoad& load, double limit) {
-    if (std::holds_alternative<solver::Twist>(load)) return std::numeric_limits<double>::quiet_NaN();
-    const auto moment = solver::value_if<solver::Moment>(load);
-    return moment ? *moment : std::get<solver::MomentRatio>(load).value * limit;
-  }
-
-  solver::Surface surface_;
-  Moduli pair_;
-  double friction_;
-};
-
-class NoTheory final : public ExactHistory {
- public:
-  explicit NoTheory(std::string reason) : reason_(std::move(reason)) {}
-
- private:
-  OracleAnswer follow(const solver::Step&) override { return {std::nullopt, reason_}; }
-
-  std::string reason_;
-};
+/// NaN for an imposed twist.
+double moment_of(const solver::TorsionLoad& load, double limit) {
+  if (std::holds_alternative<solver::Twist>(load)) return NAN;
+  const auto moment = solver::value_if<solver::Moment>(load);
+  return moment ? *moment : std::get<solver::MomentRatio>(load).value * limit;
+}
 
 }  // namespace
 
@@ -383,23 +309,64 @@ double mismatch(const solver::Material& m) {
   return (1.0 - 2.0 * m.poisson_ratio) * (1.0 + m.poisson_ratio) / m.young_modulus;
 }
 
-std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene) {
-  return std::make_unique<TorsionHistory>(Indentation(scene), *scene.steps.front().normal);
+ExactTheory torsion_history(const solver::Scene& scene) {
+  return TorsionHistory(Indentation(scene), *scene.steps.front().normal);
 }
 
-std::unique_ptr<ExactHistory> force_history(const solver::Scene& scene, double gap_exponent,
-                                            const std::array<double, 2>& direction) {
-  return std::make_unique<ForceHistory>(Indentation(scene), *scene.steps.front().normal, gap_exponent, direction);
+ExactTheory force_history(const solver::Scene& scene, double gap_exponent, const std::array<double, 2>& direction) {
+  return ForceHistory(Indentation(scene), *scene.steps.front().normal, gap_exponent, direction);
 }
 
-std::unique_ptr<ExactHistory> frictional_indentation(const solver::Scene& scene) {
-  return std::make_unique<FrictionalIndentation>(scene);
+ExactTheory frictional_indentation(const solver::Scene& scene) {
+  const Indentation indentation(scene);
+  const bool full = scene.contact.coupling == solver::Coupling::full;
+  const double friction = scene.contact.friction.coefficient;
+  const double beta = 0.5 * indentation.pair().effective * (mismatch(scene.lower) - mismatch(scene.upper));
+  const double stick_ratio = full ? analytic::spence_contact(friction, beta).stick_ratio
+                                  : analytic::goodman_stick_radius(friction, beta).ratio;
+  return [=](const solver::Step& step) -> OracleAnswer {  // the stick ratio is the same throughout
+    Oracle oracle = indentation.pressed(*step.normal);
+    oracle.state.stick_ratio = stick_ratio;
+    oracle.stick_radius = stick_ratio * oracle.contact_radius;
+    oracle.dissipated = NAN;
+    if (full) {  // shear has its part in the pressure
+      oracle.relative_uncertainty = kSpenceUncertainty;
+      oracle.contact_radius = oracle.stick_radius = oracle.normal.approach = oracle.normal.peak_pressure = NAN;
+      oracle.normal.reference_pressure = oracle.friction.moment_limit = NAN;
+    }
+    return {oracle, ""};
+  };
 }
 
-std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene) {
-  return std::make_unique<PressedEllipse>(scene);
+ExactTheory pressed_ellipse(const solver::Scene& scene) {
+  const Moduli pair = moduli(scene);
+  const double friction = scene.contact.friction.coefficient;
+  return [=, surface = scene.surfaces.front()](const solver::Step& step) -> OracleAnswer {
+    constexpr std::array unknown_pair{double{NAN}, double{NAN}};
+    Oracle oracle = pressed_ellipse_under(*step.normal, surface, pair, friction);
+    const double limit = oracle.friction.moment_limit;
+    const double a = oracle.contact_radius;
+    oracle.moment = moment_of(step.torsion, limit);
+    oracle.twist_angle = solver::value_if<solver::Twist>(step.torsion).value_or(NAN);
+    oracle.force = step.displacement ? unknown_pair : step.force;
+    oracle.displacement = step.displacement.value_or(unknown_pair);
+    oracle.stick_radius = oracle.dissipated = NAN;
+    oracle.state = {.moment_ratio = oracle.moment / limit,
+                    .moment_deficit = 1.0 - std::abs(oracle.moment) / limit,
+                    .stick_ratio = NAN,
+                    .stick_complement = NAN,
+                    .twist = oracle.twist_angle * pair.shear * a * a / oracle.friction.force,
+                    .moment = oracle.moment / (oracle.friction.force * a),
+                    .tangent_stiffness = NAN};
+    oracle.only_normal =
+        "normal contact only: no exact solution with friction is known here for shape = \"ellipsoid\" with "
+        "two different radii";
+    return {oracle, ""};
+  };
 }
 
-std::unique_ptr<ExactHistory> no_theory(const std::string& reason) { return std::make_unique<NoTheory>(reason); }
+ExactTheory no_theory(const std::string& reason) {
+  return [reason](const solver::Step&) { return OracleAnswer{std::nullopt, reason}; };
+}
 
 }  // namespace slipstick::convergence

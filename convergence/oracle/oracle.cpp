@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "convergence/oracle/exact_theories.hpp"
@@ -69,7 +68,7 @@ bool has_no_cross_contraction(const solver::Material& material) {
   return material.poisson_ratio == 0.0 || std::isinf(material.young_modulus);
 }
 
-std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
+ExactTheory history_under_force(const solver::Scene& scene) {
   if (!scene.contact.friction.is_coulomb())
     return no_theory("Cattaneo's and Mindlin's solution belongs to Coulomb's law");
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
@@ -86,7 +85,7 @@ std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
   return force_history(scene, *shape->gap_exponent, *line);
 }
 
-std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) {
+ExactTheory history_of_dissimilar(const solver::Scene& scene) {
   const auto& steps = scene.steps;
   const bool pressed_only = std::all_of(steps.begin(), steps.end(), [](const solver::Step& step) {
     return without_torsion(step) && without_force(step);
@@ -102,6 +101,29 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
     return frictional_indentation(scene);
   } catch (const std::exception& error) {
     return no_theory(error.what());
+  }
+}
+
+ExactTheory theory_of(const solver::Scene& scene) {
+  const std::string reason = obstacle(scene);
+  if (!reason.empty()) return no_theory(reason);
+  const std::string under_layer = is_coated(scene) ? coated_obstacle(scene) : "";
+  if (!under_layer.empty()) return no_theory(under_layer);
+  if (!is_coated(scene) && is_coupled(scene)) return history_of_dissimilar(scene);
+  if (is_elliptic(scene.surfaces.front())) return pressed_ellipse(scene);
+  const auto& steps = scene.steps;
+  if (!std::all_of(steps.begin(), steps.end(), without_force)) {
+    if (std::all_of(steps.begin(), steps.end(), without_torsion)) return history_under_force(scene);
+    return no_theory("no exact solution is known here for torsion together with a force");
+  }
+  const bool constant_load = std::all_of(steps.begin(), steps.end(),
+                                         [&](const solver::Step& step) { return step.normal == steps.front().normal; });
+  if (!constant_load) return no_theory("no exact solution is known here for torsion while the normal load changes");
+  try {
+    return torsion_history(scene);
+  } catch (const std::domain_error& error) {
+    const char* const on_layer = is_coated(scene) ? "the contact on the layer is not one that is known here: " : "";
+    return no_theory(on_layer + std::string(error.what()));
   }
 }
 
@@ -129,40 +151,19 @@ double Oracle::pressure(double radius) const {
 }
 
 double Oracle::traction(double radius) const {
-  if (!shear) return std::numeric_limits<double>::quiet_NaN();
+  if (!shear) return NAN;
   return radius < contact_radius ? shear(radius) : 0.0;
 }
 
 OracleAnswer ExactHistory::advance(const solver::Step& step) {
   if (left_) return {std::nullopt, "a step before left the range of the exact solution"};
-  OracleAnswer answer = follow(step);
+  OracleAnswer answer = theory_(step);
   left_ = answer.out_of_range;
   return answer;
 }
 
-std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
-  const std::string reason = obstacle(scene);
-  if (!reason.empty()) return no_theory(reason);
-  const std::string under_layer = is_coated(scene) ? coated_obstacle(scene) : "";
-  if (!under_layer.empty()) return no_theory(under_layer);
-  if (!is_coated(scene) && is_coupled(scene)) return history_of_dissimilar(scene);
-  if (is_elliptic(scene.surfaces.front())) return pressed_ellipse(scene);
-  const auto& steps = scene.steps;
-  if (!std::all_of(steps.begin(), steps.end(), without_force)) {
-    if (std::all_of(steps.begin(), steps.end(), without_torsion)) return history_under_force(scene);
-    return no_theory("no exact solution is known here for torsion together with a force");
-  }
-  const bool constant_load = std::all_of(steps.begin(), steps.end(),
-                                         [&](const solver::Step& step) { return step.normal == steps.front().normal; });
-  if (!constant_load) return no_theory("no exact solution is known here for torsion while the normal load changes");
-  try {
-    return torsion_history(scene);
-  } catch (const std::domain_error& error) {
-    const char* const on_layer = is_coated(scene) ? "the contact on the layer is not one that is known here: " : "";
-    return no_theory(on_layer + std::string(error.what()));
-  }
-}
+ExactHistory exact_history(const solver::Scene& scene) { return ExactHistory(theory_of(scene)); }
 
-OracleAnswer find_oracle(const solver::Scene& scene) { return exact_history(scene)->advance(scene.steps.front()); }
+OracleAnswer find_oracle(const solver::Scene& scene) { return exact_history(scene).advance(scene.steps.front()); }
 
 }  // namespace slipstick::convergence

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/torsion.hpp"
@@ -82,27 +83,24 @@ struct OracleAnswer {
   bool out_of_range = false;  ///< there is an exact solution, but not at this load: gross slip, or nearly
 };
 
+/// An exact theory: gives the answer at the end of each step of a scene, one after another.
+using ExactTheory = std::function<OracleAnswer(const solver::Step&)>;
+
 /// An exact theory, followed through the steps of a scene.
 class ExactHistory {
  public:
-  virtual ~ExactHistory() = default;
-  ExactHistory(const ExactHistory&) = delete;
-  ExactHistory& operator=(const ExactHistory&) = delete;
+  explicit ExactHistory(ExactTheory theory) : theory_(std::move(theory)) {}
 
   /// The answer at the end of the next step. None after one that left the range of the theory.
   OracleAnswer advance(const solver::Step& step);
 
- protected:
-  ExactHistory() = default;
-
  private:
-  virtual OracleAnswer follow(const solver::Step& step) = 0;
-
+  ExactTheory theory_;
   bool left_ = false;
 };
 
 /// The theory that holds for a scene; one that always answers with a reason where none does.
-std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene);
+ExactHistory exact_history(const solver::Scene& scene);
 
 /// The answer at the end of a scene's first step.
 OracleAnswer find_oracle(const solver::Scene& scene);

@@ -40,13 +40,13 @@ std::vector<solver::Omission> omissions(const solver::Scene& scene) {
 }
 
 Oracle find_required_oracle(const solver::Scene& scene) {
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  ExactHistory history = exact_history(scene);
   const std::string file = scene.source.string();
   OracleAnswer exact;
   const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
   for (std::size_t k = 0; k < steps; ++k) {
     const solver::Step step = solver::step_of(scene, k);
-    exact = history->advance(step);
+    exact = history.advance(step);
     if (exact.oracle && exact.oracle->only_normal.empty()) continue;
     if (exact.out_of_range) {
       throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));

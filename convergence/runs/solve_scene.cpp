@@ -27,7 +27,7 @@ SolvedScene solve_elsewhere(const solver::Scene& scene, const AllowedPrograms& p
 
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
   if (!scene.solver.program.empty() && options.programs.all) return solve_elsewhere(scene, options.programs);
-  const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
+  auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   std::vector<StepRecord> steps;
   solver::SolveOptions to_solver{
@@ -36,12 +36,12 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     steps = options.resumed->steps;
     to_solver.resumed = options.resumed->state;
     for (std::size_t k = 0; k < to_solver.resumed->finished; ++k) {
-      solved.exact = history->advance(solver::step_of(scene, k));
+      solved.exact = history.advance(solver::step_of(scene, k));
     }
   }
   to_solver.observer.step = [&](const solver::Solution& at) {
     const solver::KeptRounding scope(static_cast<int>(Rounding::nearest));
-    solved.exact = history->advance(at.loads);
+    solved.exact = history.advance(at.loads);
     if (has_history(scene)) steps.push_back(make_step(scene, at, solved.exact));
     if (options.on_step) options.on_step(at, solved.exact);
   };

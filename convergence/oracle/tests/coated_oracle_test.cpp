@@ -72,11 +72,11 @@ TEST(CoatedOracle, CarriesItsLoads) {
 /// The largest error of twists, over the largest twist, and of the limit moment in a history on `cells` cells.
 double largest_error(solver::Scene scene, int cells) {
   scene.grid.cells = {cells, cells};
-  const auto history = exact_history(scene);
+  auto history = exact_history(scene);
   double largest = 0.0;
   double twist = 0.0;
   const auto compare_step = [&](const solver::Solution& solution) {
-    const Oracle oracle = *history->advance(solution.loads).oracle;
+    const Oracle oracle = *history.advance(solution.loads).oracle;
     const Errors errors = compare(solution, oracle);
     twist = std::max(twist, std::abs(oracle.twist_angle));
     largest = std::max({largest, std::abs(errors.twist * oracle.twist_angle / twist), std::abs(errors.moment_limit)});

@@ -27,12 +27,12 @@ struct State {
 
 /// Each step with its exact answer.
 std::vector<State> follow(const Scene& scene) {
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  ExactHistory history = exact_history(scene);
   std::vector<State> states;
   solver::SolveOptions options;
   options.observer.step = [&](const Solution& solution) {
     EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-    const OracleAnswer answer = history->advance(solution.loads);
+    const OracleAnswer answer = history.advance(solution.loads);
     if (!answer.oracle) throw std::runtime_error(answer.reason);
     states.push_back({solution, *answer.oracle, compare(solution, *answer.oracle)});
   };

@@ -56,9 +56,9 @@ TEST(FrictionLawOracle, TractionsCarryTheMomentWithinTheBound) {
 TEST(FrictionLawOracle, FollowsMasingsRule) {
   for (const FrictionLaw& law : laws()) {
     const Scene scene = twisted(under(law, 0.8), {0.8, -0.4});
-    const auto history = exact_history(scene);
-    history->advance(scene.steps[0]);
-    const Oracle back = history->advance(scene.steps[1]).oracle.value();
+    auto history = exact_history(scene);
+    history.advance(scene.steps[0]);
+    const Oracle back = history.advance(scene.steps[1]).oracle.value();
     const auto first_loading = [&](double ratio) { return find_oracle(under(law, ratio)).oracle->twist_angle; };
     const double expected = first_loading(0.8) - 2.0 * first_loading(0.6);
     EXPECT_NEAR(back.twist_angle / expected, 1.0, 1e-12);

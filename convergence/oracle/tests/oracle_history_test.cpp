@@ -18,9 +18,9 @@ using testing::HasSubstr;
 constexpr double kHistoryTolerance = 1e-13;
 
 std::vector<OracleAnswer> answers(const Scene& scene) {
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  ExactHistory history = exact_history(scene);
   std::vector<OracleAnswer> list;
-  for (const Step& step : scene.steps) list.push_back(history->advance(step));
+  for (const Step& step : scene.steps) list.push_back(history.advance(step));
   return list;
 }
 
