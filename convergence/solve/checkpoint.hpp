@@ -18,31 +18,22 @@ class Checkpoint {
  public:
   Checkpoint(std::filesystem::path file, const PreparedRun& run);
 
-  const std::filesystem::path& file() const { return file_; }
-
   /// The content of the file; null: there is no file. Throws InputError for a file of another scene or
   /// executable and for a damaged file.
   std::shared_ptr<const FinishedSteps> read() const;
 
-  /// Replaces the file in one step, so that a complete file is always on disk. Throws InputError if that fails.
-  void write(const solver::HistoryState& state, const std::vector<StepRecord>& steps) const;
-
- private:
-  std::filesystem::path file_;
-  std::string scene_;    ///< identifies what is solved
-  std::string program_;  ///< identifies the executable
-};
-
-/// Writes a checkpoint after the first step, then whenever writing takes at most 1 % of the time since the last.
-class PacedCheckpoint {
- public:
-  explicit PacedCheckpoint(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}
+  /// Writes after the first step, then whenever writing takes at most 1 % of the time since the last. Replaces the
+  /// file in one step, so that a complete file is always on disk. Throws InputError if that fails.
   void offer(const solver::HistoryState& state, const std::vector<StepRecord>& steps);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  const Checkpoint& checkpoint_;
+  void write(const solver::HistoryState& state, const std::vector<StepRecord>& steps) const;
+
+  std::filesystem::path file_;
+  std::string scene_;       ///< identifies what is solved
+  std::string program_;     ///< identifies the executable
   Clock::duration took_{};  ///< to write the last checkpoint
   Clock::time_point written_{};
 };

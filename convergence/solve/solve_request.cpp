@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -144,15 +143,14 @@ SolvedScene solve_with_checkpoint(const SolveRequest& request, Json& result) {
                              "left out with --checkpoint: rounding_seed cannot be resumed, its random stream "
                              "restarts");
   }
-  const Checkpoint checkpoint(request.checkpoint.file,
-                              prepare_run({.scene = request.source.file, .overrides = request.source.overrides}));
-  PacedCheckpoint paced(checkpoint);
+  Checkpoint checkpoint(request.checkpoint.file,
+                        prepare_run({.scene = request.source.file, .overrides = request.source.overrides}));
   const auto resumed = finished_steps(checkpoint, request);
   SolveSceneOptions options = grid_options(request, resumed ? resumed->state->finished : 0);
   options.resumed = resumed;
   if (request.ranks.first()) {
     options.on_state = [&](const solver::HistoryState& state, const std::vector<StepRecord>& steps) {
-      paced.offer(state, steps);
+      checkpoint.offer(state, steps);
     };
   }
   return solve_or_keep_steps(request.scene, options, result);
