@@ -47,9 +47,7 @@ ContactRecord contact_of(const solver::Scene& scene, const Solution& solution) {
 }
 
 LimitRecord limit_of(const solver::LimitLoad& limit) {
-  LimitRecord record{.factor = number_or(limit.factor, std::isnan(limit.factor) ? kBroken : "no load is imposed"),
-                     .centre = {},
-                     .direction = {}};
+  LimitRecord record{.factor = number_or(limit.factor, std::isnan(limit.factor) ? kBroken : "no load is imposed")};
   if (!std::isfinite(limit.factor)) return record;
   if (limit.centre) {
     record.centre = *limit.centre;
@@ -99,8 +97,7 @@ LoadsRecord loads_of(const Solution& solution) {
 EnergyRecord energy_of(const Solution& solution) {
   return {.elastic = number_or(solution.elastic_energy, kBrokeDown),
           .dissipated = number_or(solution.dissipated, kBrokeDown),
-          .work = number_or(solution.work, kBrokeDown),
-          .dissipated_total = {}};
+          .work = number_or(solution.work, kBrokeDown)};
 }
 
 // ---------------------------------------------------------------- resolution
@@ -244,7 +241,6 @@ ProblemRecord problem_of(const solver::Scene& scene, const Solution& solution) {
           .op = to_string(scene.solver.op),
           .cell_traction = to_string(scene.solver.cell_traction),
           .pressure = to_string(scene.contact.pressure),
-          .profile = {},
           .left_out = solution.left_out,
           .cells = {grid.n1, grid.n2},
           .cell_size = {grid.h1, grid.h2},
@@ -254,8 +250,7 @@ ProblemRecord problem_of(const solver::Scene& scene, const Solution& solution) {
 
 MethodRecord method_of(const Solution& solution) {
   const std::string& no_direction = solution.status == solver::Status::converged ? kNoSlip : kBroken;
-  MethodRecord record{.grids = {},
-                      .safeguards = solution.safeguards,
+  MethodRecord record{.safeguards = solution.safeguards,
                       .pressure_iterations = solution.pressure_iterations,
                       .pressure_complementarity = solution.pressure_complementarity,
                       .change = number_or(solution.change, kBrokeDown),
@@ -309,19 +304,14 @@ SolveRecord make_record(const solver::Scene& scene, const Solution& solution, co
                         std::vector<StepRecord> steps) {
   SolveRecord record{.status = status_of(solution),
                      .message = solution.message,
-                     .run = {},
                      .name = scene.name,
                      .problem = problem_of(scene, solution),
                      .end = end_of(scene, solution, exact),
                      .method = method_of(solution),
                      .memory = {.solver_bytes = solution.bytes,
                                 .predicted_bytes = solution.predicted_bytes,
-                                .peak_bytes = peak_bytes(),
-                                .ranks = {}},
-                     .provenance = provenance(solution.threads),
-                     .history = {},
-                     .program = {},
-                     .profile = {}};
+                                .peak_bytes = peak_bytes()},
+                     .provenance = provenance(solution.threads)};
   if (solution.grid.ranks.several()) record.memory.ranks = ranks_of(solution.grid.ranks);
   if (!steps.empty()) record.history = history_of(std::move(steps));
   record.warnings = doubts_about(scene, record);
@@ -369,8 +359,7 @@ CertificateRecord make_certificate(const solver::Certificate& certificate, const
           .rounding = number_or(certificate.rounding, reason),
           .moment = number_or(certificate.moment, reason),
           .force = number_or(certificate.force, reason),
-          .friction_bound = number_or(certificate.friction_bound, reason),
-          .energy = {}};
+          .friction_bound = number_or(certificate.friction_bound, reason)};
 }
 
 ErrorsRecord no_errors(const std::string& reason) {
@@ -382,10 +371,7 @@ ErrorsRecord no_errors(const std::string& reason) {
 }
 
 FieldErrorRecord make_field_error(const FieldError& error, const std::string& reason) {
-  return {.l1 = number_or(error.l1, reason),
-          .l2 = number_or(error.l2, reason),
-          .max = number_or(error.max, reason),
-          .kept = {}};
+  return {.l1 = number_or(error.l1, reason), .l2 = number_or(error.l2, reason), .max = number_or(error.max, reason)};
 }
 
 TractionErrorRecord make_traction_error(const TractionError& error, const std::string& reason) {
@@ -394,8 +380,7 @@ TractionErrorRecord make_traction_error(const TractionError& error, const std::s
           .stick_edge = make_field_error(error.stick_edge, reason),
           .contact_edge = make_field_error(error.contact_edge, reason),
           .inside = make_field_error(error.inside, reason),
-          .outside = make_field_error(error.outside, reason),
-          .sharpened = {}};
+          .outside = make_field_error(error.outside, reason)};
 }
 
 std::size_t peak_bytes() {

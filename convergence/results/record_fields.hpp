@@ -64,7 +64,6 @@ class FieldWriter {
     for (const char* key : keys) (*this)(key, Number{.why_missing = reason});
   }
 
- private:
   template <typename T>
   static Json json_of(const T& value) {
     if constexpr (requires(FieldWriter & fields) { list_fields(fields, value); }) {
@@ -82,6 +81,8 @@ class FieldWriter {
     for (const T& value : values) list.push_back(json_of(value));
     return list;
   }
+
+ private:
   template <typename T>
   void put_or_reason(const char* key, bool is_known, const T& value, const std::string& reason) {
     object_[key] = is_known ? Json(value) : Json();

@@ -386,14 +386,6 @@ void list_fields(auto& fields, Is<SolveRecord> auto& record) {
 namespace {
 
 template <typename Record>
-Json json_of(const Record& record) {
-  Json json = Json::object();
-  FieldWriter fields(json);
-  list_fields(fields, record);
-  return json;
-}
-
-template <typename Record>
 Record record_of(const Json& json) {
   try {
     Record record;
@@ -414,19 +406,19 @@ double SolveRecord::seconds() const {
   return history ? history->seconds : end.work.seconds.total;
 }
 
-Json to_json(const SolveRecord& record) { return json_of(record); }
+Json to_json(const SolveRecord& record) { return FieldWriter::json_of(record); }
 std::vector<Json> to_json(const std::vector<SolveRecord>& records) {
   std::vector<Json> all;
-  for (const SolveRecord& record : records) all.push_back(json_of(record));
+  for (const SolveRecord& record : records) all.push_back(to_json(record));
   return all;
 }
 SolveRecord from_json(const Json& json) { return record_of<SolveRecord>(json); }
-Json to_json(const StepRecord& step) { return json_of(step); }
+Json to_json(const StepRecord& step) { return FieldWriter::json_of(step); }
 StepRecord step_from_json(const Json& json) { return record_of<StepRecord>(json); }
-Json to_json(const CertificateRecord& certificate) { return json_of(certificate); }
-Json to_json(const solver::Safeguards& safeguards) { return json_of(safeguards); }
-Json to_json(const FieldErrorRecord& error) { return json_of(error); }
-Json to_json(const TractionErrorRecord& error) { return json_of(error); }
-void to_json(Json& json, const Provenance& provenance) { json = json_of(provenance); }
+Json to_json(const CertificateRecord& certificate) { return FieldWriter::json_of(certificate); }
+Json to_json(const solver::Safeguards& safeguards) { return FieldWriter::json_of(safeguards); }
+Json to_json(const FieldErrorRecord& error) { return FieldWriter::json_of(error); }
+Json to_json(const TractionErrorRecord& error) { return FieldWriter::json_of(error); }
+void to_json(Json& json, const Provenance& provenance) { json = FieldWriter::json_of(provenance); }
 
 }  // namespace slipstick::convergence
