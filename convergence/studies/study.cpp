@@ -49,13 +49,6 @@ std::vector<Variation> read_variations(SceneReader& reader) {
   return variations;
 }
 
-std::vector<std::string> read_quantities(SceneReader& reader) {
-  std::vector<std::string> quantities;
-  const std::size_t count = reader.list("quantities").size();
-  for (std::size_t i = 0; i < count; ++i) quantities.push_back(reader.text(fmt::format("quantities[{}]", i)));
-  return quantities;
-}
-
 void require_finite(const std::filesystem::path& file, const Study& study) {
   const auto at_least_one = [](std::size_t count) { return static_cast<double>(std::max<std::size_t>(1, count)); };
   double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
@@ -105,7 +98,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
   study.tolerances = reader.numbers("tolerances");
   std::sort(study.tolerances.begin(), study.tolerances.end(), std::greater<>());
   study.variations = read_variations(reader);
-  study.quantities = read_quantities(reader);
+  study.quantities = reader.texts("quantities");
   reader.reject_unknown();
   if (study.cells.size() < 2 && study.tolerances.size() < 2 && study.variations.empty()) {
     throw solver::InputError(file.string(), "nothing varies; allowed: several cells, several tolerances, or [[vary]]");

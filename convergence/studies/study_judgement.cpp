@@ -10,7 +10,6 @@
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -272,14 +271,11 @@ QuantityResult judge_quantity(const Chosen& chosen, const solver::Scene& scene, 
 
 }  // namespace
 
-BudgetRuns budget_runs(const RunSpec& observed, double tolerance) {
-  RunSpec tightened = observed;
-  tightened.overrides.push_back(fmt::format("solver.tolerance={}", kTightening * tolerance));
-  RunSpec upward = tightened;
-  upward.rounding = Rounding::upward;
-  RunSpec downward = tightened;
-  downward.rounding = Rounding::downward;
-  return {observed, tightened, {upward, downward}};
+std::vector<RunSpec> budget_runs(const RunSpec& observed, double tolerance) {
+  std::vector<RunSpec> runs(3, changed(observed, {fmt::format("solver.tolerance={}", kTightening * tolerance)}));
+  runs[1].rounding = Rounding::upward;
+  runs[2].rounding = Rounding::downward;
+  return runs;
 }
 
 Budget split_error(const std::string& quantity, const Json& observed, const Json& tightened,
@@ -299,9 +295,9 @@ Budget split_error(const std::string& quantity, const Json& observed, const Json
 }
 
 Budget error_budget(const PreparedRun& run, const std::string& quantity, const ProcessPool& pool) {
-  const BudgetRuns runs = budget_runs(run.spec, run.scene.solver.tolerance);
-  const std::vector<Json> results =
-      to_json(pool.run({runs.observed, runs.tightened, runs.rounded[0], runs.rounded[1]}));
+  std::vector<RunSpec> runs = budget_runs(run.spec, run.scene.solver.tolerance);
+  runs.insert(runs.begin(), run.spec);
+  const std::vector<Json> results = to_json(pool.run(runs));
   return split_error(quantity, results[0], results[1], {results[2], results[3]});
 }
 

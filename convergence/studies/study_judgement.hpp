@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -21,18 +20,12 @@ struct Budget {
   double reference = 0.0;       ///< uncertainty of the exact answer
 };
 
-/// A run, the same to a hundredth of its tolerance, and this one rounded upward and downward.
-struct BudgetRuns {
-  RunSpec observed;
-  RunSpec tightened;
-  std::array<RunSpec, 2> rounded;
-};
-
-/// Ratio of the tolerances of `tightened` and `observed`. The iteration error of `tightened` is a hundredth
-/// of the one of `observed`, or a tenth where the error is proportional to the root of the tolerance.
+/// Ratio of the tolerances of a tightened and an observed run. The iteration error of the tightened one is a
+/// hundredth of the observed one's, or a tenth where the error is proportional to the root of the tolerance.
 inline constexpr double kTightening = 1e-2;
 
-BudgetRuns budget_runs(const RunSpec& observed, double tolerance);
+/// The run to a hundredth of its tolerance, then this one rounded upward and downward.
+std::vector<RunSpec> budget_runs(const RunSpec& observed, double tolerance);
 
 /// The parts of an error, a path into the results. A part is NaN if a result for it has no number.
 Budget split_error(const std::string& quantity, const Json& observed, const Json& tightened,

@@ -9,10 +9,9 @@
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
-namespace {
 
-Json to_json(const StudyRow& row) {
-  Json json{
+void to_json(Json& json, const StudyRow& row) {
+  json = {
       {"cells", row.cells}, {"h", row.h}, {"shift", row.shift}, {"requested", row.requested}, {"status", row.status}};
   if (row.message) json.emplace("message", *row.message);
   for (const auto& [path, number] : row.numbers) set_number(json, path, number);
@@ -20,14 +19,9 @@ Json to_json(const StudyRow& row) {
   Json iteration;
   for (const auto& [path, number] : row.iteration) set_number(iteration, path, number);
   if (!iteration.is_null()) json.emplace("iteration", std::move(iteration));
-  return json;
 }
 
-Json to_json(const std::vector<StudyRow>& rows) {
-  Json json = Json::array();
-  for (const StudyRow& row : rows) json.push_back(to_json(row));
-  return json;
-}
+namespace {
 
 Json to_json(const MeshQuantity& at) {
   Json json{{"grids", at.grids}};
@@ -217,12 +211,12 @@ Json to_json(const SeriesResult& series) {
       budget.push_back(to_json(each.budget[i], each.path, series.meshes[i]));
   }
   json.update(Json{{"failed_runs", series.failed_runs.json()},
-                   {"rows", to_json(series.rows)},
+                   {"rows", series.rows},
                    {"meshes", meshes},
                    {"order", orders},
                    {"extrapolated", limits},
                    {"budget", budget}});
-  if (series.tolerances) json.emplace("tolerances", to_json(*series.tolerances));
+  if (series.tolerances) json.emplace("tolerances", *series.tolerances);
   return json;
 }
 

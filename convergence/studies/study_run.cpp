@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <utility>
 
 #include "convergence/results/provenance.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study_judgement.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model/make_model.hpp"
@@ -69,31 +69,30 @@ std::vector<RunSpec> series_runs(const Study& study, const Series& series) {
   std::vector<RunSpec> runs;
   for (const Mesh& mesh : series.meshes) {
     for (const GridChoice& grid : mesh.grids) runs.push_back(make_run(study, grid, series.tolerance));
-    const BudgetRuns parts = budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
-    runs.push_back(parts.tightened);
-    if (mesh.rounded) runs.insert(runs.end(), parts.rounded.begin(), parts.rounded.end());
+    const auto parts = budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
+    runs.insert(runs.end(), parts.begin(), mesh.rounded ? parts.end() : parts.begin() + 1);
   }
   return runs;
 }
 
+/// The first `count` results, taken from the front of `found`.
+std::vector<Json> take(std::span<const Json>& found, std::size_t count) {
+  const auto taken = found.first(count);
+  found = found.subspan(count);
+  return {taken.begin(), taken.end()};
+}
+
 /// The results of series_runs(), taken from the front of `found`.
 std::vector<MeshResults> take_series(const Series& series, std::span<const Json>& found) {
-  const auto take = [&](std::size_t count) {
-    const std::vector<Json> taken(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
-    found = found.subspan(count);
-    return taken;
-  };
   std::vector<MeshResults> results;
   for (const Mesh& mesh : series.meshes) {
     MeshResults& at = results.emplace_back();
-    at.grids = take(mesh.grids.size());
-    at.tightened = take(1).front();
-    if (mesh.rounded) at.rounded = take(2);
+    at.grids = take(found, mesh.grids.size());
+    at.tightened = take(found, 1).front();
+    if (mesh.rounded) at.rounded = take(found, 2);
   }
   return results;
 }
-
-bool varies_tolerance(const Study& study) { return study.tolerances.size() > 1; }
 
 /// The runs of a series to the tolerances of the study and to one that is tighter than all, mesh by mesh.
 std::vector<RunSpec> tolerance_runs(const Study& study, const Series& series) {
@@ -103,17 +102,6 @@ std::vector<RunSpec> tolerance_runs(const Study& study, const Series& series) {
     runs.push_back(make_run(study, mesh.grids.front(), kTightening * study.tolerances.back()));
   }
   return runs;
-}
-
-/// The results of tolerance_runs() by mesh, taken from the front of `found`.
-std::vector<std::vector<Json>> take_tolerances(const Study& study, const Series& series, std::span<const Json>& found) {
-  const std::size_t count = study.tolerances.size() + 1;
-  std::vector<std::vector<Json>> by_mesh;
-  for (std::size_t i = 0; i < series.meshes.size(); ++i) {
-    by_mesh.emplace_back(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
-    found = found.subspan(count);
-  }
-  return by_mesh;
 }
 
 /// Solves in parallel and counts the failures.
@@ -131,10 +119,7 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
   std::iota(open.begin(), open.end(), std::size_t{0});
   for (int pass = 0; !open.empty(); ++pass) {
     std::vector<RunSpec> runs;
-    for (const std::size_t i : open) {
-      const std::vector<RunSpec> more = series_runs(study, all[i]);
-      runs.insert(runs.end(), more.begin(), more.end());
-    }
+    for (const std::size_t i : open) std::ranges::move(series_runs(study, all[i]), std::back_inserter(runs));
     const std::size_t listed_before = pool.lacking();
     const std::vector<Json> solved = solve_all(runs, pool, failed);
     if (pool.lacking() > listed_before) break;
@@ -203,16 +188,14 @@ StudyResult run_study(const Study& study, const ProcessPool& pool) {
   const bool is_judged = pool.lacking() == listed_before;
   for (std::size_t i = 0; i < all.size() && is_judged; ++i)
     result.series.push_back(judge_series(study, all[i], results[i]));
-  if (varies_tolerance(study)) {
+  if (study.tolerances.size() > 1) {
     std::vector<RunSpec> runs;
-    for (const Series& series : all) {
-      const std::vector<RunSpec> more = tolerance_runs(study, series);
-      runs.insert(runs.end(), more.begin(), more.end());
-    }
+    for (const Series& series : all) std::ranges::move(tolerance_runs(study, series), std::back_inserter(runs));
     const std::vector<Json> solved = solve_all(runs, pool, result.failed_runs);
     std::span<const Json> found(solved);
     for (std::size_t i = 0; i < all.size() && is_judged; ++i) {
-      const auto by_mesh = take_tolerances(study, all[i], found);
+      std::vector<std::vector<Json>> by_mesh(all[i].meshes.size());
+      for (std::vector<Json>& at : by_mesh) at = take(found, study.tolerances.size() + 1);
       result.series[i].tolerances = tolerance_rows(study, all[i], by_mesh, results[i]);
     }
   }
