@@ -164,18 +164,11 @@ std::array<double, 2> mean_over_cell(const Oracle& oracle, const solver::Grid& g
   return {sum[0] / (points * points), sum[1] / (points * points)};
 }
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr FieldError kUnknownField{kUnknown, kUnknown, kUnknown};
-
-TractionError unknown_tractions() {
-  return {kUnknownField, kUnknownField, kUnknownField, kUnknownField, kUnknownField, kUnknownField};
-}
-
 /// Against averages over the cells near an edge, and values at the centres elsewhere, where the two differ by
 /// h^2/24 times the traction's second derivatives.
 TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid,
                              const ExactFields& fields) {
-  if (!oracle.shear) return unknown_tractions();
+  if (!oracle.shear) return {};
   const double diagonal = std::hypot(grid.h1, grid.h2);
   const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(grid.h1, grid.h2) / kTableSteps);
   const double width = kEdgeBand * std::sqrt(grid.cell_area());
@@ -229,19 +222,15 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
 }
 
 FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
-  const auto finite = [&](Index i) { return std::isfinite(exact[i]); };
-  const auto all = solver::Sweep::whole(exact.size());
-  const auto difference = all.sum<Norms>([&](Index first, Index last, Norms& sum) {
-    for (Index i = first; i < last; ++i) {
-      if (finite(i)) sum.add(std::abs(pressure[i] - exact[i]));
-    }
-  });
-  const auto size = all.sum<Norms>([&](Index first, Index last, Norms& sum) {
-    for (Index i = first; i < last; ++i) {
-      if (finite(i)) sum.add(exact[i]);
-    }
-  });
-  return field_error(difference, size);
+  const auto norms_of = [&](const auto& size_at) {
+    return solver::Sweep::whole(exact.size()).sum<Norms>([&](Index first, Index last, Norms& sum) {
+      for (Index i = first; i < last; ++i) {
+        if (std::isfinite(exact[i])) sum.add(size_at(i));
+      }
+    });
+  };
+  return field_error(norms_of([&](Index i) { return std::abs(pressure[i] - exact[i]); }),
+                     norms_of([&](Index i) { return exact[i]; }));
 }
 
 FieldError sharpened_error(const std::vector<SharpenedCell>& cells, const solver::Solution& solution,
@@ -262,9 +251,7 @@ FieldError sharpened_error(const std::vector<SharpenedCell>& cells, const solver
 
 }  // namespace
 
-double relative_error(double value, double exact) {
-  return std::isfinite(exact) ? value / exact - 1.0 : std::numeric_limits<double>::quiet_NaN();
-}
+double relative_error(double value, double exact) { return std::isfinite(exact) ? value / exact - 1.0 : NAN; }
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
   const Index cells = grid.cells();
@@ -319,10 +306,10 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
       .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
       .peak_pressure = relative_error(solution.peak_pressure, oracle.normal.peak_pressure),
-      .traction = fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
-      .sharpened = fields && oracle.shear ? sharpened_error(sharp.cells, solution, exact) : kUnknownField,
+      .traction = fields ? traction_error(solution.traction, oracle, solution.grid, exact) : TractionError{},
+      .sharpened = fields && oracle.shear ? sharpened_error(sharp.cells, solution, exact) : FieldError{},
       .kept = sharp.kept,
-      .pressure = fields ? pressure_error(solution.pressure, exact.pressure) : kUnknownField,
+      .pressure = fields ? pressure_error(solution.pressure, exact.pressure) : FieldError{},
   };
 }
 

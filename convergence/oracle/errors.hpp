@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,9 @@ namespace slipstick::convergence {
 /// Relative errors of a field: sum |f - exact| / sum |exact|, the same of squares under a root, and of
 /// maxima. A cell where the exact value is infinite (a cone's axis, with an odd number of cells) is left out.
 struct FieldError {
-  double l1;
-  double l2;
-  double max;
+  double l1 = NAN;  ///< NaN: not known, as the following
+  double l2 = NAN;
+  double max = NAN;
 };
 
 /// Errors of a traction field, all relative to the exact field of the whole contact, so that the errors of
