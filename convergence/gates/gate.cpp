@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <regex>
 #include <utility>
-#include <variant>
 
 #include "convergence/results/markup.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"

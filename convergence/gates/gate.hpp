@@ -148,6 +148,9 @@ Judgement judge_relative(const Gate& gate, const Json& result, const Json& other
 /// Judges by an interval that was found for the bound.
 Judgement judge_within(const Gate& gate, const Interval& interval, const Json& result);
 
+/// The row of a judgement in the result of a command: docs/schema/gate.schema.json (gate_report.cpp).
+void to_json(Json& json, const Judgement& judgement);
+
 /// The judgement of a gate that cannot be judged.
 Judgement refuse(const Gate& gate, const std::string& why);
 

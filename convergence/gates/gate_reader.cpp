@@ -11,10 +11,8 @@
 #include <utility>
 #include <variant>
 
-#include "convergence/gates/gate.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"
-#include "solver/input/setting_key.hpp"
 #include "solver/input/toml_reader.hpp"
 
 namespace slipstick::convergence {

@@ -7,10 +7,9 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
+#include <utility>
 #include <variant>
 
-#include "convergence/gates/gate.hpp"
 #include "convergence/results/markup.hpp"
 #include "solver/input/input_file.hpp"
 
@@ -30,11 +29,9 @@ bool is_skipped(Outcome outcome) { return outcome == Outcome::reported || outcom
 std::vector<const Judgement*> worst_first(const std::vector<Judgement>& judgements) {
   std::vector<const Judgement*> sorted;
   for (const Judgement& judgement : judgements) sorted.push_back(&judgement);
-  const auto badness = [](const Judgement* judgement) {
-    const auto severity = std::find(kSeverity.begin(), kSeverity.end(), judgement->outcome) - kSeverity.begin();
-    return std::make_tuple(severity, -judgement->factor);
-  };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return badness(a) < badness(b); });
+  std::ranges::stable_sort(sorted, {}, [](const Judgement* judgement) {
+    return std::pair(std::ranges::find(kSeverity, judgement->outcome), -judgement->factor);
+  });
   return sorted;
 }
 
@@ -158,9 +155,11 @@ Json bound_json(const Judgement& judgement) {
   return json;
 }
 
-Json judgement_json(const Judgement& judgement) {
+}  // namespace
+
+void to_json(Json& json, const Judgement& judgement) {
   const Gate& gate = judgement.gate;
-  Json json{
+  json = {
       {"id", gate.id}, {"file", gate.file.string()}, {"line", gate.line}, {"outcome", to_string(judgement.outcome)}};
   if (was_read(judgement)) {
     json.update(Json{{"quantity", gate.quantity}, {"value", judgement.value}});
@@ -175,10 +174,7 @@ Json judgement_json(const Judgement& judgement) {
   }
   json.emplace("why", judgement.why);
   if (!judgement.dominant_error.empty()) json.emplace("blame", judgement.dominant_error);
-  return json;
 }
-
-}  // namespace
 
 std::string gates_text(const std::vector<Judgement>& judgements) {
   std::size_t width = 0;
@@ -221,7 +217,7 @@ std::string list_text(const std::vector<Judgement>& gates) {
 Json list_json(const std::vector<Judgement>& gates) {
   Json rows = Json::array();
   for (const Judgement& each : gates) {
-    Json& row = rows.emplace_back(judgement_json(each));
+    Json& row = rows.emplace_back(each);
     if (!was_read(each)) continue;
     for (const char* const of_verdict : {"outcome", "value", "value_reason", "factor", "factor_reason", "why"})
       row.erase(of_verdict);
@@ -255,9 +251,7 @@ Json counts_json(const std::vector<Judgement>& judgements) {
 }
 
 Json gates_json(const std::vector<Judgement>& judgements) {
-  Json rows = Json::array();
-  for (const Judgement& judgement : judgements) rows.push_back(judgement_json(judgement));
-  return {{"exit_code", exit_code(judgements)}, {"counts", counts_json(judgements)}, {"gates", rows}};
+  return {{"exit_code", exit_code(judgements)}, {"counts", counts_json(judgements)}, {"gates", judgements}};
 }
 
 }  // namespace slipstick::convergence

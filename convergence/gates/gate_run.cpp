@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -11,7 +10,6 @@
 #include <utility>
 #include <variant>
 
-#include "convergence/gates/gate.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/studies/study_judgement.hpp"

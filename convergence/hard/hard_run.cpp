@@ -226,11 +226,13 @@ Json written_json(const HardRow& row) {
   return json;
 }
 
-Json row_json(const HardRow& row) {
-  Json json{{"family", row.hard.family},
-            {"case", row.hard.name},
-            {"set", row.hard.run.overrides},
-            {"scene", row.hard.run.scene.string()}};
+}  // namespace
+
+void to_json(Json& json, const HardRow& row) {
+  json = {{"family", row.hard.family},
+          {"case", row.hard.name},
+          {"set", row.hard.run.overrides},
+          {"scene", row.hard.run.scene.string()}};
   add_verdict(json, row.judged);
   if (!row.fields.empty() && row.record.is_converged()) json.push_back({"written", written_json(row)});
   Json variants = Json::object();
@@ -239,8 +241,9 @@ Json row_json(const HardRow& row) {
   Json methods = Json::object();
   for (const auto& [name, compared] : row.methods) add_verdict(methods[name] = Json::object(), compared);
   if (!methods.empty()) json.push_back({"methods", methods});
-  return json;
 }
+
+namespace {
 
 template <typename Verdict, std::size_t N>
 Json by_verdict(const std::array<std::size_t, N>& counts) {
@@ -250,14 +253,9 @@ Json by_verdict(const std::array<std::size_t, N>& counts) {
 }
 
 /// Names of the families in the order of the cases, with the reason why each is hard.
-std::vector<std::pair<std::string, std::string>> families_of(const HardResult& result) {
-  std::vector<std::pair<std::string, std::string>> families;
-  for (const HardRow& row : result.rows) {
-    const std::pair family{row.hard.family, row.hard.why};
-    if (std::ranges::find(families, family.first, &decltype(family)::first) == families.end()) {
-      families.push_back(family);
-    }
-  }
+nlohmann::ordered_map<std::string, std::string> families_of(const HardResult& result) {
+  nlohmann::ordered_map<std::string, std::string> families;
+  for (const HardRow& row : result.rows) families.insert({row.hard.family, row.hard.why});
   return families;
 }
 
@@ -316,9 +314,7 @@ Json to_json(const HardResult& result) {
   for (const auto& [name, why] : families_of(result)) {
     families[name] = {{"why", why}, {"counts", by_verdict<HardVerdict>(result.counts(name))}};
   }
-  Json rows = Json::array();
-  for (const HardRow& row : result.rows) rows.push_back(row_json(row));
-  Json json{{"counts", counts_json(result)}, {"families", std::move(families)}, {"rows", std::move(rows)}};
+  Json json{{"counts", counts_json(result)}, {"families", std::move(families)}, {"rows", result.rows}};
   Json methods = Json::object();
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
     methods[result.methods[i]] = by_verdict<MethodVerdict>(result.method_counts(i));

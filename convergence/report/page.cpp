@@ -12,11 +12,31 @@
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
+
+void to_json(Json& json, const PageNumber& row) {
+  json = {{"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
+  set_numbers(json, {{"reference", row.reference},
+                     {"error", row.error},
+                     {"mesh", row.mesh},
+                     {"path", row.path},
+                     {"uncertainty", row.uncertainty}});
+}
+
+void to_json(Json& json, const CostPoint& point) {
+  json = {{"method", point.method}, {"cells", point.cells}, {"tolerance", point.tolerance}, {"status", point.status}};
+  set_numbers(json, {{"seconds", point.seconds}, {"error", point.error}});
+}
+
+void to_json(Json& json, const PageProgram& row) {
+  json = {{"name", row.name},       {"cells", row.cells},     {"status", row.status},
+          {"version", row.version}, {"message", row.message}, {"number", row.number}};
+  set_numbers(json, {{"seconds", row.seconds}, {"cpu_seconds", row.cpu_seconds}, {"error", row.error}});
+}
+
 namespace {
 
-template <class Part>
-void set(Json& json, const std::string& key, const std::optional<Part>& part) {
-  if (part) json.emplace(key, Json(*part));
+void set(Json& json, const std::string& key, const std::optional<Json>& part) {
+  if (part) json[key] = *part;
 }
 
 Json to_json(const SceneDescription& scene) {
@@ -28,45 +48,11 @@ Json to_json(const SceneDescription& scene) {
       {"gap", {{"x1", gap.x1}, {"along_1", gap.along_1}, {"x2", gap.x2}, {"along_2", gap.along_2}, {"map", gap.map}}}};
 }
 
-Json to_json(const PageNumber& row) {
-  Json json{{"key", row.key}, {"words", row.words}, {"unit", row.unit}, {"value", row.value}, {"basis", row.basis}};
-  set_numbers(json, {{"reference", row.reference},
-                     {"error", row.error},
-                     {"mesh", row.mesh},
-                     {"path", row.path},
-                     {"uncertainty", row.uncertainty}});
-  return json;
-}
-
-Json to_json(const CostPoint& point) {
-  Json json{{"method", point.method}, {"cells", point.cells}, {"tolerance", point.tolerance}, {"status", point.status}};
-  set_numbers(json, {{"seconds", point.seconds}, {"error", point.error}});
-  return json;
-}
-
-Json to_json(const PageProgram& row) {
-  Json json{{"name", row.name},       {"cells", row.cells},     {"status", row.status},
-            {"version", row.version}, {"message", row.message}, {"number", row.number}};
-  set_numbers(json, {{"seconds", row.seconds}, {"cpu_seconds", row.cpu_seconds}, {"error", row.error}});
-  return json;
-}
-
-template <class Part>
-Json list(const std::vector<Part>& parts) {
-  Json json = Json::array();
-  for (const Part& part : parts) json.push_back(to_json(part));
-  return json;
-}
-
-Json to_json(const Cost& cost) {
-  Json json{{"number", cost.number}, {"points", list(cost.points)}, {"choices", cost.choices}};
-  set_number(json, "reference_uncertainty", cost.reference_uncertainty);
-  return json;
-}
-
 Json to_json(const Costs& costs) {
-  Json json{{"cost", to_json(costs.cost)}};
-  if (costs.programs) json.emplace("programs", list(*costs.programs));
+  Json cost{{"number", costs.cost.number}, {"points", costs.cost.points}, {"choices", costs.cost.choices}};
+  set_number(cost, "reference_uncertainty", costs.cost.reference_uncertainty);
+  Json json{{"cost", std::move(cost)}};
+  if (costs.programs) json.emplace("programs", *costs.programs);
   set(json, "operators", costs.operators);
   return json;
 }
@@ -244,7 +230,7 @@ Json to_json(const Headline& headline) {
 }
 
 Json to_json(const SceneCosts& costs) {
-  Json json{{"provenance", costs.provenance}, {"scene", costs.scene}, {"numbers", list(costs.numbers)}};
+  Json json{{"provenance", costs.provenance}, {"scene", costs.scene}, {"numbers", costs.numbers}};
   json.update(to_json(costs.costs));
   return json;
 }
@@ -255,7 +241,7 @@ Json to_json(const Page& page) {
             {"answer", page.answer},
             {"fields", page.fields}};
   set(json, "check", page.check);
-  json.update(Json{{"studies", page.studies}, {"numbers", list(page.numbers)}});
+  json.update(Json{{"studies", page.studies}, {"numbers", page.numbers}});
   set(json, "uncertainty", page.uncertainty);
   if (page.costs) json.update(to_json(*page.costs));
   set(json, "hard", page.hard);

@@ -15,7 +15,6 @@
 #include "convergence/gates/gate_reader.hpp"
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
-#include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/report/scene_verdict.hpp"
@@ -32,7 +31,6 @@ using solver::Index;
 
 constexpr double kProfileRatios[] = {0.5, 0.9};
 constexpr double kMethodsRatio = 0.9;  ///< load for the comparison of methods, as in the scene of the ellipse
-constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
 constexpr const char* kMethods[] = {"coulomb", "paper"};
 constexpr std::size_t kQuickHardStep = 10;  ///< every tenth hard case
 
@@ -125,10 +123,10 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
     run.fields = folder / fields_file(ratio);
     run.profile = true;
   }
-  for (const char* method : {"coulomb", "paper"}) {
+  for (const char* method : kMethods) {
     for (const double ratio : size.moment_ratios) add("loading", {size.loading_cells, "solved", ratio, method});
   }
-  for (const char* pressure : kPressures) {
+  for (const char* pressure : {"solved", "hertz", "hertz_averaged"}) {
     for (const double ratio : kProfileRatios) {
       for (const Index cells : size.mesh_cells) add("mesh", {cells, pressure, ratio});
     }
@@ -169,7 +167,7 @@ std::map<std::string, std::vector<Json>> solve_all(const Sections& sections, con
   auto result = results.begin();
   for (const auto& [name, of_section] : sections) {
     const auto end = result + static_cast<std::ptrdiff_t>(of_section.size());
-    found[name].assign(std::make_move_iterator(result), std::make_move_iterator(end));
+    std::move(result, end, std::back_inserter(found[name]));
     result = end;
   }
   return found;
@@ -288,12 +286,6 @@ std::vector<Json> by_method(const std::vector<Json>& results, const std::string&
   return found;
 }
 
-Json to_json(const KnownField& field) {
-  Json json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}};
-  json.update(field.check);
-  return json;
-}
-
 /// The passing gate that is nearest to its bound; nullptr where none has a bound in numbers.
 const Judgement* nearest_to_bound(const std::vector<Judgement>& gates) {
   const Judgement* found = nullptr;
@@ -404,6 +396,11 @@ PaperValidation validate(const Validation& request, const fs::path& folder, cons
   return paper;
 }
 
+void to_json(Json& json, const KnownField& field) {
+  json = {{"program", field.program}, {"file", field.file}, {"expected", field.expected}};
+  json.update(field.check);
+}
+
 std::vector<Finding> judge_validation(const PaperValidation& paper) {
   Finding gates{"Gates", "not on a quick page; make gate runs them"};
   if (paper.gates) gates = judge_gates(*paper.gates);
@@ -423,10 +420,8 @@ Json counts_json(const PaperValidation& paper) {
 
 Json to_json(const PaperValidation& paper) {
   Json json = paper.figures;
-  Json peers = Json::array();
-  for (const KnownField& peer : paper.peers) peers.push_back(to_json(peer));
   json.update(
-      Json{{"hard", to_json(paper.hard)}, {"peers", std::move(peers)}, {"literature", gates_json(paper.literature)}});
+      Json{{"hard", to_json(paper.hard)}, {"peers", paper.peers}, {"literature", gates_json(paper.literature)}});
   if (paper.gates) json.emplace("gates", gates_json(*paper.gates));
   return json;
 }

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
@@ -169,15 +168,6 @@ Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, con
   return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids), path};
 }
 
-AttemptAccount account_of(const Attempt& made, const Scene& scene, double seconds) {
-  return {made.answer.record.problem.cells,
-          scene.solver.tolerance,
-          made.reached.error,
-          made.reached.why,
-          seconds,
-          made.grids};
-}
-
 /// Replaces the stated uncertainty of the twist or moment by the error of mesh and steps. Relative errors.
 void put_uncertainty(EndRecord& end, double mesh, double path) {
   ResolutionRecord& resolved = end.resolution;
@@ -193,18 +183,6 @@ void put_uncertainty(EndRecord& end, double mesh, double path) {
   resolved.warning.clear();
 }
 
-Json attempt_json(const AttemptAccount& attempt) {
-  Json json{{"cells", attempt.cells}, {"tolerance", attempt.tolerance}};
-  set_number(json, "error", attempt.error, attempt.why);
-  json.emplace("seconds", attempt.seconds);
-  Json grids = Json::array();
-  for (const ShiftedGrid& grid : attempt.grids) {
-    grids.push_back({{"extent", grid.extent}, {"value", grid.value}});
-  }
-  if (!grids.empty()) json.emplace("grids", std::move(grids));
-  return json;
-}
-
 /// Names surfaces outside the measured data, by which the first mesh is chosen; empty: none.
 std::string note_on(const Scene& scene) {
   for (const solver::Surface& surface : scene.surfaces) {
@@ -216,6 +194,15 @@ std::string note_on(const Scene& scene) {
 }
 
 }  // namespace
+
+void to_json(Json& json, const ShiftedGrid& grid) { json = {{"extent", grid.extent}, {"value", grid.value}}; }
+
+void to_json(Json& json, const AttemptAccount& attempt) {
+  json = {{"cells", attempt.cells}, {"tolerance", attempt.tolerance}};
+  set_number(json, "error", attempt.error, attempt.why);
+  json.emplace("seconds", attempt.seconds);
+  if (!attempt.grids.empty()) json.emplace("grids", attempt.grids);
+}
 
 SolvePlan accuracy_plan(const Scene& given, AccuracyTarget target) {
   require_reachable(given, target);
@@ -243,7 +230,8 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     const auto start = std::chrono::steady_clock::now();
     made = attempt(chosen, approach, target.of, solve);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    account.attempts.push_back(account_of(made, chosen, seconds));
+    account.attempts.push_back({made.answer.record.problem.cells, chosen.solver.tolerance, made.reached.error,
+                                made.reached.why, seconds, made.grids});
     if (made.within(target.error)) {
       account.not_reached.reset();
       break;
@@ -299,13 +287,11 @@ Json to_json(const Accuracy& accuracy) {
   json.update({{"how", accuracy.reached.how}, {"why", why}, {"attempts", Json::array()}});
   if (!accuracy.grid) return json;
   const GridAccuracy& grid = *accuracy.grid;
-  Json attempts = Json::array();
-  for (const AttemptAccount& attempt : grid.attempts) attempts.push_back(attempt_json(attempt));
   if (grid.not_reached) json.emplace("not_reached", *grid.not_reached);
   set_number(json, "path", grid.path,
              std::isnan(grid.path) ? kPathNotKnown : "more parts of the steps do not carry these loads");
   json.update({{"substeps", grid.substeps},
-               {"attempts", std::move(attempts)},
+               {"attempts", grid.attempts},
                {"replaced", {{"cells", grid.replaced_cells}, {"tolerance", grid.replaced_tolerance}}}});
   if (grid.uncertainty) set_number(json, "uncertainty", *grid.uncertainty, why);
   if (!grid.note.empty()) json.emplace("note", grid.note);

@@ -11,7 +11,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <utility>
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result_parts.hpp"
@@ -23,32 +22,30 @@ namespace {
 
 /// A number of a result whose uncertainty is computed.
 struct OutputNumber {
-  const char* name;                      ///< path in the result
-  const char* words;                     ///< name for a person
-  double (*value)(const EndRecord&);     ///< NaN: missing
-  double (*error)(const ErrorsRecord&);  ///< against the exact answer; NaN: none
+  const char* name;                   ///< path in the result
+  const char* words;                  ///< name for a person
+  double (*value)(const EndRecord&);  ///< NaN: missing
+  Number ErrorsRecord::*error;        ///< against the exact answer; nullptr: none
 };
-double no_error(const ErrorsRecord&) { return NAN; }
 const std::array<OutputNumber, 10> kOutputs{
     {{"twist_angle", "twist", [](const EndRecord& end) -> double { return end.loads.twist_angle; },
-      [](const ErrorsRecord& errors) -> double { return errors.twist; }},
+      &ErrorsRecord::twist},
      {"displacement[0]", "displacement along x1", [](const EndRecord& end) { return end.loads.displacement.values[0]; },
-      [](const ErrorsRecord& errors) -> double { return errors.displacement; }},
+      &ErrorsRecord::displacement},
      {"displacement[1]", "displacement along x2", [](const EndRecord& end) { return end.loads.displacement.values[1]; },
-      [](const ErrorsRecord& errors) -> double { return errors.displacement; }},
-     {"moment", "moment", [](const EndRecord& end) -> double { return end.loads.moment; },
-      [](const ErrorsRecord& errors) -> double { return errors.moment; }},
+      &ErrorsRecord::displacement},
+     {"moment", "moment", [](const EndRecord& end) -> double { return end.loads.moment; }, &ErrorsRecord::moment},
      {"moment_limit", "moment limit", [](const EndRecord& end) -> double { return end.loads.moment_limit; },
-      [](const ErrorsRecord& errors) -> double { return errors.moment_limit; }},
+      &ErrorsRecord::moment_limit},
      {"stick_radius", "stick radius", [](const EndRecord& end) -> double { return end.contact.stick_radius; },
-      [](const ErrorsRecord& errors) -> double { return errors.stick_radius; }},
+      &ErrorsRecord::stick_radius},
      {"contact_radius", "contact radius", [](const EndRecord& end) -> double { return end.contact.contact_radius; },
-      [](const ErrorsRecord& errors) -> double { return errors.contact_radius; }},
+      &ErrorsRecord::contact_radius},
      {"peak_pressure", "peak pressure", [](const EndRecord& end) -> double { return end.contact.peak_pressure; },
-      [](const ErrorsRecord& errors) -> double { return errors.peak_pressure; }},
-     {"approach", "approach", [](const EndRecord& end) -> double { return end.contact.approach; }, no_error},
+      &ErrorsRecord::peak_pressure},
+     {"approach", "approach", [](const EndRecord& end) -> double { return end.contact.approach; }, nullptr},
      {"dissipated", "dissipated energy", [](const EndRecord& end) -> double { return end.energy.dissipated; },
-      [](const ErrorsRecord& errors) -> double { return errors.dissipated; }}}};
+      &ErrorsRecord::dissipated}}};
 
 double value_of(const SolveRecord& record, std::string_view name) {
   return std::ranges::find(kOutputs, name, &OutputNumber::name)->value(record.end);
@@ -162,7 +159,7 @@ CentralDifference difference_at(const Neighbours& near, std::size_t input) {
 
 /// Relative error of an output against the exact answer, or by mesh and steps; NaN: not known.
 double numerical_error(const EndRecord& end, const OutputNumber& number) {
-  const double error = std::abs(number.error(end.errors));
+  const double error = number.error == nullptr ? NAN : std::abs(end.errors.*number.error);
   const std::string whole = std::string(number.name).substr(0, std::string_view(number.name).find('['));
   return std::isnan(error) && end.resolution.number == whole ? end.resolution.uncertainty.value : error;
 }
@@ -294,16 +291,20 @@ std::string draws_text(const Draws& draws) {
   return text_line("draws", text);
 }
 
+}  // namespace
+
+void to_json(Json& json, const UncertainPart& part) {
+  json = {{"key", part.key}, {"exponent", part.exponent}, {"part", part.part}};
+}
+
+namespace {
+
 Json output_json(const UncertainOutput& output, bool exact) {
-  Json parts = Json::array();
-  for (const UncertainPart& part : output.parts) {
-    parts.push_back({{"key", part.key}, {"exponent", part.exponent}, {"part", part.part}});
-  }
   Json json{{"value", output.value}, {"standard", output.standard}, {"relative", output.relative}};
   set_number(json, "numerical", output.numerical,
              exact ? "the exact answer has no mesh; it is within rounding"
                    : "neither an exact value nor an estimate is known");
-  json.emplace("parts", std::move(parts));
+  json.emplace("parts", output.parts);
   Json quantiles;
   for (const auto& [word, value] : output.quantiles) quantiles[word] = value;
   if (!quantiles.empty()) json.emplace("quantiles", std::move(quantiles));
