@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -34,10 +33,7 @@ Digits surviving_digits(double value, const std::vector<double>& samples) {
   if (samples.empty()) throw std::invalid_argument("digits of no samples");
   double squares = 0.0;
   for (const double sample : samples) squares += (sample - value) * (sample - value);
-  if (!std::isfinite(squares)) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    return {nan, nan, nan};
-  }
+  if (!std::isfinite(squares)) return {NAN, NAN, NAN};
   if (squares == 0.0) return {kAllDigits, kAllDigits, kAllDigits};
   const auto n = static_cast<double>(samples.size());
   return {digits_of(std::sqrt(squares / n), value),

@@ -233,6 +233,15 @@ std::string continuum_text(const CertificateRecord& certificate, const Units& un
   return text;
 }
 
+/// The law of a result's key friction_law; empty: Coulomb's.
+solver::FrictionKind friction_law_of(const std::string& word) {
+  using enum solver::FrictionKind;
+  for (const auto kind : {tresca, capped, power}) {
+    if (word == to_string(kind)) return kind;
+  }
+  return coulomb;
+}
+
 std::string certificate_text(const SolveRecord& record, const Units& units) {
   const CertificateRecord& certificate = record.end.certificate;
   const solver::FrictionKind law = friction_law_of(record.end.friction.law);
@@ -256,14 +265,6 @@ std::string title_of(const SolveRecord& record) {
 }
 
 }  // namespace
-
-solver::FrictionKind friction_law_of(const std::string& word) {
-  using enum solver::FrictionKind;
-  for (const auto kind : {tresca, capped, power}) {
-    if (word == to_string(kind)) return kind;
-  }
-  return coulomb;
-}
 
 std::string right_direction_text(solver::FrictionKind law) {
   return law == solver::FrictionKind::coulomb ? "Coulomb: 0" : "right: 0";

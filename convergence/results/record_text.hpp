@@ -10,9 +10,6 @@ namespace slipstick::convergence {
 /// The answer of a solve in a few lines for a person, in the units of the scene's file.
 std::string solve_text(const SolveRecord& record, const solver::Units& units = solver::Units());
 
-/// The law of a result's key friction_law; empty: Coulomb's.
-solver::FrictionKind friction_law_of(const std::string& word);
-
 /// The angle between slip and traction that the law prescribes, in words.
 std::string right_direction_text(solver::FrictionKind law);
 

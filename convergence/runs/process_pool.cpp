@@ -13,10 +13,8 @@
 #include <thread>
 #include <utility>
 
-#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/result_cache.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/worker.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
@@ -300,22 +298,19 @@ std::vector<SolveRecord> ProcessPool::run(const std::vector<RunSpec>& specs) con
 }
 
 std::vector<SolveRecord> ProcessPool::run_or_refuse(const std::vector<RunSpec>& specs) const {
+  std::vector<SolveRecord> records(specs.size());
   std::vector<PreparedRun> readable;
-  std::vector<std::string> complaints;  // empty: the scene can be read
-  for (const RunSpec& spec : specs) {
-    std::string& complaint = complaints.emplace_back();
+  std::vector<SolveRecord*> places;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
     try {
-      readable.push_back(prepare_run(spec));
+      readable.push_back(prepare_run(specs[i]));
+      places.push_back(&records[i]);
     } catch (const solver::InputError& error) {
-      complaint = error.what();
+      records[i] = not_computed(RunStatus::refused, error.what(), specs[i]);
     }
   }
-  const std::vector<SolveRecord> solved = run_prepared(readable);
-  std::vector<SolveRecord> records;
-  auto next = solved.begin();
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    records.push_back(complaints[i].empty() ? *next++ : not_computed(RunStatus::refused, complaints[i], specs[i]));
-  }
+  std::vector<SolveRecord> solved = run_prepared(readable);
+  for (std::size_t k = 0; k < solved.size(); ++k) *places[k] = std::move(solved[k]);
   return records;
 }
 

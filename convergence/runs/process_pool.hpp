@@ -9,7 +9,6 @@
 #include "convergence/results/solve_record.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "convergence/system/run_program.hpp"
 
 namespace slipstick::convergence {
 

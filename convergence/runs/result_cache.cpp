@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "convergence/results/json_text.hpp"
-#include "solver/input/input_error.hpp"
-#include "solver/input/input_file.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {

@@ -14,7 +14,6 @@
 #include "convergence/results/output.hpp"
 #include "convergence/results/solution_fields.hpp"
 #include "convergence/runs/run_list.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
@@ -13,8 +11,8 @@
 #include "convergence/solve/plan.hpp"
 #include "solver/grid/grid_transfer.hpp"
 #include "solver/model/make_model.hpp"
-#include "solver/model/memory_plan.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/solve.hpp"
 #include "solver/step/pressure.hpp"
 
 namespace slipstick::convergence {
@@ -242,19 +240,18 @@ std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& c
 double estimation_safety(AccuracyOf of) { return of == AccuracyOf::traction ? kOfNorm : kTwoMeshes; }
 
 ReachedError reached_error(const Scene& scene, const Solution& solution, const ErrorsRecord& errors, AccuracyOf of) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const AccuracyQuantity quantity = accuracy_quantity(scene, of);
-  if (solution.status != solver::Status::converged) return {unknown, "exact", solution.message};
+  if (solution.status != solver::Status::converged) return {NAN, "exact", solution.message};
   const double error = std::abs(quantity.error(errors));
   if (std::isfinite(error)) return {error, "exact", "against the exact answer"};
   const Solution coarse = solver::solve(half_as_fine(scene, solution.grid));
   if (coarse.status != solver::Status::converged) {
-    return {unknown, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
+    return {NAN, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
   }
   const double order = order_of(quantity, scene);
   const double estimate =
       quantity.is_field() ? field_error(solution, coarse, order) : number_error(solution, coarse, quantity.path, order);
-  if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or its error, is zero"};
+  if (!std::isfinite(estimate)) return {NAN, "estimated", "the value, or its error, is zero"};
   return {std::max(estimate, usual_error(solution, of)), "estimated",
           fmt::format("from {} x {} cells, order {}", coarse.grid.n1, coarse.grid.n2, order)};
 }

@@ -7,7 +7,6 @@
 #include "convergence/solve/measured_accuracy.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
-#include "solver/solve.hpp"
 
 /// Chooses the mesh and the tolerance that reach a relative error, from measured data, finds the error of a
 /// solve, and chooses the next ones if it is too large.

@@ -3,7 +3,6 @@
 #include <functional>
 #include <string>
 
-#include "convergence/results/json_text.hpp"
 #include "convergence/results/solve_record.hpp"
 #include "convergence/runs/solve_scene.hpp"
 

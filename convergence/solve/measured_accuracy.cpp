@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "accuracy_text.hpp"
 
@@ -37,12 +38,12 @@ MeasuredMesh mesh_of(const toml::table& table) {
 
 const MeasuredError& at(const MeasuredMesh& mesh, AccuracyOf of) { return mesh.errors[static_cast<std::size_t>(of)]; }
 
-/// Index of the finer of the two neighbouring meshes between which to interpolate.
+/// The two neighbouring meshes between which to interpolate, the finer one last.
 template <typename Reached>
-std::size_t finer_of_pair(const AccuracyData& data, Reached reached) {
+std::pair<const MeasuredMesh&, const MeasuredMesh&> neighbours(const AccuracyData& data, Reached reached) {
   std::size_t i = 1;
   while (i + 1 < data.meshes.size() && !reached(data.meshes[i])) ++i;
-  return i;
+  return {data.meshes[i - 1], data.meshes[i]};
 }
 
 /// Work on one mesh, linear in log(tolerance) between its tolerances: iterations gain digits at a constant rate.
@@ -81,9 +82,7 @@ Needed needed_for(const AccuracyData& data, AccuracyOf of, double error) {
     // The tolerance falls in proportion to the error.
     return {finest.cells_across * finer, at(finest, of).tolerance * error / at(finest, of).error};
   }
-  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return at(mesh, of).error <= error; });
-  const MeasuredMesh& coarse = data.meshes[i - 1];
-  const MeasuredMesh& fine = data.meshes[i];
+  const auto [coarse, fine] = neighbours(data, [&](const MeasuredMesh& mesh) { return at(mesh, of).error <= error; });
   return {power_between(error, at(coarse, of).error, coarse.cells_across, at(fine, of).error, fine.cells_across),
           at(fine, of).tolerance};
 }
@@ -94,9 +93,7 @@ double error_with(const AccuracyData& data, AccuracyOf of, double across) {
   if (across > finest.cells_across) {
     return at(finest, of).error * std::pow(finest.cells_across / across, falling_order(data, of));
   }
-  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
-  const MeasuredMesh& coarse = data.meshes[i - 1];
-  const MeasuredMesh& fine = data.meshes[i];
+  const auto [coarse, fine] = neighbours(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
   return power_between(across, coarse.cells_across, at(coarse, of).error, fine.cells_across, at(fine, of).error);
 }
 
@@ -109,9 +106,7 @@ double falling_order(const AccuracyData& data, AccuracyOf of) {
 }
 
 double work_of(const AccuracyData& data, double across, double tolerance) {
-  const std::size_t i = finer_of_pair(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
-  const MeasuredMesh& coarse = data.meshes[i - 1];
-  const MeasuredMesh& fine = data.meshes[i];
+  const auto [coarse, fine] = neighbours(data, [&](const MeasuredMesh& mesh) { return mesh.cells_across >= across; });
   if (across <= coarse.cells_across) return work_on(coarse, tolerance);
   return power_between(across, coarse.cells_across, work_on(coarse, tolerance), fine.cells_across,
                        work_on(fine, tolerance));

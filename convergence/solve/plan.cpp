@@ -11,7 +11,6 @@
 
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/exact_result.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/model/make_model.hpp"
 #include "solver/model/memory_plan.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/make_record.hpp"
@@ -199,8 +198,7 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
                                     const ContactOnGrid& contact, const GridSolve& solve) {
   const double radius = 0.5 * cells_across(contact, std::max(scene.grid.cells[0], scene.grid.cells[1]));
   const std::vector<Scene> scenes = shifted(scene, form.stick_ratio * radius);
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  ShiftedMean found{.answer = {}, .error = unknown, .uncertainty = unknown, .why = {}, .grids = {}};
+  ShiftedMean found{.answer = {}, .error = NAN, .uncertainty = NAN, .why = {}, .grids = {}};
   std::vector<double> values;
   std::vector<double> errors;
   // The grid with the smallest cells comes last, since the last solve leaves the files of fields.

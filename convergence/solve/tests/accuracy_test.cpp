@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "convergence/oracle/errors.hpp"
-#include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
