@@ -11,7 +11,6 @@
 #include "convergence/results/make_record.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/record_text.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "solver/contact/stick_front.hpp"
 #include "solver/step/describe_step.hpp"
 

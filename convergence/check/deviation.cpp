@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
-#include "solver/contact/limit_load.hpp"
 #include "solver/contact/normal_contact.hpp"
 #include "solver/scene/surface.hpp"
 #include "solver/scene/surface_geometry.hpp"

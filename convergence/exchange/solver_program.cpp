@@ -9,7 +9,6 @@
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 

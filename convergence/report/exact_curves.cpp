@@ -13,7 +13,6 @@
 #include "analytic/paper_equations.hpp"
 #include "analytic/stresses/largest_stress.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/order.hpp"

@@ -9,7 +9,6 @@
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "convergence/runs/path_uncertainty.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/studies/study_run.hpp"

@@ -3,10 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/hard_run.hpp"

@@ -7,7 +7,6 @@
 
 #include "convergence/orders/order.hpp"
 #include "convergence/report/validation.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "convergence/studies/study_result.hpp"
 
 namespace slipstick::convergence {
