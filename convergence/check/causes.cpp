@@ -45,35 +45,42 @@ struct MistakenScene {
   Scene scene;
 };
 
+constexpr const char* kOneCompliance = "only one body's compliance is counted";
+
+std::string compliance_times(double factor) {
+  return fmt::format("the compliance of the pair is multiplied by {:.3g}", factor);
+}
+
 /// Scenes with one mistake each.
 std::vector<MistakenScene> mistaken_scenes(const Scene& scene) {
   std::vector<MistakenScene> mistakes;
-  const auto add = [&](const Cause& cause, const auto& change) {
-    change(mistakes.emplace_back(MistakenScene{cause, scene}).scene);
+  const auto add = [&](const std::string& sentence, const auto& change) {
+    change(mistakes.emplace_back(MistakenScene{{sentence}, scene}).scene);
   };
   for (const Body& each : kBodies) {
     const auto member = each.member;
     const Material& body = scene.*member;
     if (!std::isinf(body.young_modulus)) {
-      add({mistake::one_compliance}, [&](Scene& s) { s.*member = {std::numeric_limits<double>::infinity(), 0.0}; });
+      add(kOneCompliance, [&](Scene& s) { s.*member = {std::numeric_limits<double>::infinity(), 0.0}; });
     }
     if (!body.coating) continue;
-    add({.mistake = mistake::layer_ignored, .subject = each.name}, [&](Scene& s) { (s.*member).coating.reset(); });
-    add({.mistake = mistake::layer_exchanged, .subject = each.name}, [&](Scene& s) {
+    add(fmt::format("the layer on the {} body is ignored", each.name), [&](Scene& s) { (s.*member).coating.reset(); });
+    add(fmt::format("the constants of the {} body and of its layer are exchanged", each.name), [&](Scene& s) {
       Material& other = s.*member;
       std::swap(other.young_modulus, other.coating->young_modulus);
       std::swap(other.poisson_ratio, other.coating->poisson_ratio);
     });
   }
   if (is_coated(scene))
-    add({mistake::layer_on_other_body}, [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
-  if (scene.layer.kind != nullptr) add({mistake::layer_between_ignored}, [](Scene& s) { s.layer = {}; });
+    add("the layer is on the other body", [](Scene& s) { std::swap(s.upper.coating, s.lower.coating); });
+  if (scene.layer.kind != nullptr) add("the layer between the bodies is ignored", [](Scene& s) { s.layer = {}; });
   for (const double factor : {0.5, 2.0}) {
-    add({mistake::compliance_factor, factor}, [&](Scene& s) {
+    add(compliance_times(factor), [&](Scene& s) {
       for (const Body& body : kBodies) (s.*body.member).young_modulus /= factor;
     });
     if (scene.surfaces.size() == 1 && scene.surfaces.front().shape == solver::Shape::sphere)
-      add({mistake::radius_factor, factor}, [&](Scene& s) { s.surfaces.front().radius *= factor; });
+      add(fmt::format("the radius is multiplied by {:.3g}", factor),
+          [&](Scene& s) { s.surfaces.front().radius *= factor; });
   }
   return mistakes;
 }
@@ -115,7 +122,10 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
       (scene.*of).coating->thickness *= times;
       return off_from(e, scene);
     });
-    if (off <= allowed) return Cause{mistake::layer_thickness, factor * thickness, thickness, name};
+    if (off <= allowed) {
+      return Cause{fmt::format("the layer on the {} body is {:.3g} m thick instead of {:.4g} m", name,
+                               factor * thickness, thickness)};
+    }
   }
   const auto [factor, off] = nearest_factor([&](double times) {
     Scene scene = e.scene;
@@ -126,7 +136,8 @@ std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {
     }
     return off_from(e, scene);
   });
-  return off <= allowed ? std::optional(Cause{mistake::modulus_factor, factor}) : std::nullopt;
+  if (!(off <= allowed)) return std::nullopt;
+  return Cause{fmt::format("the elastic moduli are multiplied by {:.3g}", factor)};
 }
 
 /// The mistakes in bodies and layers that explain a field's pressure: the normal contact of the scene with one of them,
@@ -137,8 +148,7 @@ std::vector<Cause> mistakes_in_pressure(const Examination& e, double allowed) {
   if (!solved || static_cast<double>(e.contact.grid.cells()) > kQuickCells) return {};
   std::vector<Cause> causes;
   for (MistakenScene& mistaken : mistaken_scenes(e.scene)) {
-    const bool known =
-        std::ranges::any_of(causes, [&](const Cause& cause) { return sentence(cause) == sentence(mistaken.cause); });
+    const bool known = std::ranges::find(causes, mistaken.cause.sentence, &Cause::sentence) != causes.end();
     if (known || !(off_from(e, mistaken.scene) <= allowed)) continue;
     mistaken.cause.alternative = !causes.empty();
     causes.push_back(std::move(mistaken.cause));
@@ -159,7 +169,7 @@ std::optional<Cause> lost_rows(const Examination& e, double allowed) {
   const auto lost = ((found == 0.0) && (right > kCarriesSomething * right.maxCoeff())).count();
   const double off = (there * (found - right).abs()).sum() / (there * right).sum();
   if (lost == 0 || !(off <= allowed)) return std::nullopt;
-  return Cause{mistake::lost_rows, static_cast<double>(lost)};
+  return Cause{fmt::format("the file lacks rows: {} cells where the scene has pressure have none", lost)};
 }
 
 /// Whether a pressure that is infinite somewhere has the exact values at cell centres, which miss its load.
@@ -174,7 +184,7 @@ bool is_sampled_singularity(const Examination& e) {
 Cause twist_mistake(const Examination& e, double allowed) {
   struct Ratio {
     double value;
-    Cause cause;
+    std::string sentence;
   };
   const auto compliance = [](const solver::Material& m) {  // of a coated body there is no single one
     return m.coating ? std::nan("") : (1.0 + m.poisson_ratio) / m.young_modulus;
@@ -183,16 +193,16 @@ Cause twist_mistake(const Examination& e, double allowed) {
   const double upper = compliance(e.scene.upper);
   const auto& exact = e.exact.oracle;
   const double normalised = exact ? exact->state.twist / exact->twist_angle : std::nan("");
-  for (const auto& [ratio, cause] : {Ratio{lower / (lower + upper), {mistake::one_compliance}},
-                                     {upper / (lower + upper), {mistake::one_compliance}},
-                                     {2.0, {mistake::compliance_factor, 2.0}},
-                                     {180.0 / std::numbers::pi, {mistake::twist_in_degrees}},
-                                     {1e3, {mistake::twist_in_mrad}},
-                                     {-1.0, {mistake::twist_sign}},
-                                     {normalised, {mistake::normalised_twist}}}) {
-    if (std::abs(e.state.twist / e.fitted.twist / ratio - 1.0) <= allowed) return cause;
+  for (const auto& [ratio, sentence] : {Ratio{lower / (lower + upper), kOneCompliance},
+                                        {upper / (lower + upper), kOneCompliance},
+                                        {2.0, compliance_times(2.0)},
+                                        {180.0 / std::numbers::pi, "the twist is in degrees"},
+                                        {1e3, "the twist is in mrad"},
+                                        {-1.0, "the twist has the opposite sign"},
+                                        {normalised, "the twist is the normalised one, G a^2 phi/(mu W)"}}) {
+    if (std::abs(e.state.twist / e.fitted.twist / ratio - 1.0) <= allowed) return {sentence};
   }
-  return {mistake::other_twist, e.fitted.twist};
+  return {fmt::format("the twist does not belong to these tractions, whose own is {:.6g} rad", e.fitted.twist)};
 }
 
 /// Tractions that are right under a smaller load than the scene's: of the step before the last of N equal
@@ -207,19 +217,21 @@ std::optional<Cause> late_step(const Examination& e, const Verdict& verdict) {
   const double steps = std::round(-1.0 / *error);
   const double apart = std::abs(1.0 + *error * steps) / steps;
   if (steps <= kMostSteps && apart <= std::min(verdict.allowed.moment, 0.05 / (steps * (steps + 1.0))))
-    return Cause{mistake::late_step, steps};
+    return Cause{fmt::format(
+        "the tractions are one step late: they belong to the step before the last of {:.0f} equal steps", steps)};
   const bool twist_of_scene =
       e.twist_given && e.exact.oracle && !verdict.holds("twist") &&
       std::abs(relative_error(e.state.twist, e.exact.oracle->twist_angle)) <= verdict.allowed.motion;
-  return twist_of_scene ? std::optional(Cause{mistake::late_step_by_twist}) : std::nullopt;
+  if (!twist_of_scene) return std::nullopt;
+  return Cause{"the tractions are one step late: only the twist belongs to the scene's load"};
 }
 
 /// A wrong kernel, with the twist that follows from it.
 Cause kernel_cause(const Hypothesis& kernel, const Examination& e) {
   Cause cause = kernel.cause;
   if (e.reference.right.scaled || !is_torsion(e.scene)) return cause;
-  cause.note = fmt::format(" (then the twist is {:.6g} rad, {})", kernel.twist,
-                           off_text(relative_error(kernel.twist, e.reference.right.twist)));
+  cause.sentence += fmt::format(" (then the twist is {:.6g} rad, {})", kernel.twist,
+                                off_text(relative_error(kernel.twist, e.reference.right.twist)));
   return cause;
 }
 
@@ -244,7 +256,7 @@ std::vector<Cause> causes_in_tractions(const Examination& e, const Verdict& verd
   } else if (!directions_explain(e.contact, e.reference.right, allowed.tractions)) {
     return causes;
   }
-  if (directions) causes.push_back({mistake::kept_directions});
+  if (directions) causes.push_back({"slipping cells keep a direction that does not oppose their slip"});
   return causes;
 }
 
@@ -264,7 +276,7 @@ Explanation explain(const Examination& e, const Verdict& verdict) {
   const bool right_pressure = all_hold({"normal_load_error", "pressure"});
   if (!right_pressure) {
     if (is_sampled_singularity(e)) {
-      found.causes = {{mistake::sampled_singularity}};
+      found.causes = {{"a pressure with an infinite value is sampled at cell centres instead of averaged over cells"}};
     } else if (const auto lost = lost_rows(e, verdict.allowed.pressure)) {
       found.causes = {*lost};
     } else if (verdict.holds("normal_load_error")) {

@@ -68,7 +68,7 @@ Json judged_json(const std::vector<Judged>& judged) {
 }
 
 Json hypothesis_json(const Hypothesis& hypothesis) {
-  Json json{{"name", sentence(hypothesis.cause)}};
+  Json json{{"name", hypothesis.cause.sentence}};
   json.update(numbers({{"gap", hypothesis.gap}, {"stick_gap", hypothesis.stick_gap}, {"twist_angle", hypothesis.twist}},
                       kBroken));
   return json;
@@ -81,7 +81,7 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
   if (!tried.empty()) json.update({{"tried", tried}});
   const auto set_found = [&](const char* key, const std::optional<Hypothesis>& found) {
     if (found) {
-      json.update({{key, sentence(found->cause)}});
+      json.update({{key, found->cause.sentence}});
     } else {
       set_missing(json, key, "none that was tried explains the gap");
     }
@@ -231,7 +231,7 @@ std::string FieldCheck::details() const {
   std::string causes;
   for (const Cause& cause : explanation.causes) {
     causes += causes.empty() ? "likely cause: " : cause.alternative ? ", or " : ", and ";
-    causes += sentence(cause);
+    causes += cause.sentence;
   }
   const Judged& discrete = verdict.discrete;
   std::vector<std::string> parts;

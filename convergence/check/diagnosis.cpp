@@ -1,6 +1,6 @@
 #include "convergence/check/diagnosis.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -141,7 +141,8 @@ class Trial {
     const double times = best_multiple(by_pressure_);
     constexpr double kNear = 0.05;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.cause = {mistake::coupling_factor, times}, .by_pressure = times};
+    return Assumption{.cause = {fmt::format("the kernels K13 and K23 are multiplied by {:.3g}", times)},
+                      .by_pressure = times};
   }
 
   /// The kernel K12 times the factor that fits best.
@@ -149,7 +150,7 @@ class Trial {
     const double times = best_multiple(pair_.poisson_compliance * u_.cross);
     constexpr double kNear = 0.1;
     if (!(distance_from_named(times) > kNear)) return std::nullopt;
-    return Assumption{.cause = {mistake::cross_kernel_factor, times}, .cross = times};
+    return Assumption{.cause = {fmt::format("the cross kernel K12 is multiplied by {:.3g}", times)}, .cross = times};
   }
 
   /// The Poisson's ratio that fits best; none where no body has it.
@@ -158,7 +159,9 @@ class Trial {
     const double own = pair_.poisson_compliance / pair_.shear_compliance;
     const double ratio = change * own;
     if (!(ratio > 0.0 && ratio <= 0.5 && own > 0.0)) return std::nullopt;
-    return Assumption{.cause = {mistake::poisson_ratio, ratio, own}, .poisson = change, .cross = change};
+    return Assumption{.cause = {fmt::format("Poisson's ratio is {:.3g} instead of {:.3g}", ratio, own)},
+                      .poisson = change,
+                      .cross = change};
   }
 
  private:
@@ -193,17 +196,20 @@ class Trial {
 };
 
 std::vector<Hypothesis> try_kernels(const Trial& trial) {
-  std::vector<Assumption> assumptions{{.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = -1.0},
-                                      {.cause = {mistake::cross_kernel_even}, .cross = 0.0, .mirrored = 1.0},
-                                      {.cause = {mistake::cross_kernel_missing}, .cross = 0.0},
-                                      {.cause = {mistake::cross_kernel_sign}, .cross = -1.0},
-                                      {.cause = {mistake::kernels_exchanged}, .poisson = 0.0, .exchanged = 1.0},
-                                      {.cause = {mistake::no_poisson_ratio}, .poisson = 0.0, .cross = 0.0}};
+  const Cause even{"the cross kernel K12, odd in x1 and in x2, is mirrored as an even function"};
+  const Cause sign{"the cross kernel K12 has the wrong sign, or the rotation field is (x2, x1) instead of (-x2, x1)"};
+  std::vector<Assumption> assumptions{
+      {.cause = even, .cross = 0.0, .mirrored = -1.0},
+      {.cause = even, .cross = 0.0, .mirrored = 1.0},
+      {.cause = {"the cross kernel K12 is missing"}, .cross = 0.0},
+      {.cause = sign, .cross = -1.0},
+      {.cause = {"the kernels K11 and K22 are exchanged"}, .poisson = 0.0, .exchanged = 1.0},
+      {.cause = {"Poisson's ratio is taken as zero"}, .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
   if (const auto times = trial.best_cross()) assumptions.push_back(*times);
   if (trial.coupled()) {
-    assumptions.push_back({.cause = {mistake::coupling_missing}, .by_pressure = 0.0});
-    assumptions.push_back({.cause = {mistake::coupling_sign}, .by_pressure = -1.0});
+    assumptions.push_back({.cause = {"the kernels K13 and K23 are missing"}, .by_pressure = 0.0});
+    assumptions.push_back({.cause = {"the kernels K13 and K23 have the wrong sign"}, .by_pressure = -1.0});
     if (const auto times = trial.best_coupling()) assumptions.push_back(*times);
   }
   std::vector<Hypothesis> tried;
@@ -267,8 +273,9 @@ PowerShown power_shown(const GivenContact& c) {
 
 OtherFriction multiple_of_law(const GivenContact& c, double factor) {
   const solver::FrictionLaw& law = c.friction;
-  return {law.is_coulomb() ? Cause{mistake::friction_coefficient, factor * law.coefficient, law.coefficient}
-                           : Cause{mistake::friction_factor, factor},
+  return {{law.is_coulomb() ? fmt::format("the friction coefficient is {:.4g} instead of {:.4g}",
+                                          factor * law.coefficient, law.coefficient)
+                            : fmt::format("the friction bound is multiplied by {:.4g}", factor)},
           factor * c.friction_bound};
 }
 
@@ -286,24 +293,22 @@ std::optional<OtherFriction> other_law(const GivenContact& c) {
   const bool same = (law.is_coulomb() && is(1.0)) || (law.kind == solver::FrictionKind::tresca && is(0.0)) ||
                     (law.kind == solver::FrictionKind::power && is(law.exponent));
   if (same) return std::nullopt;  // nearly the scene's law: something else is wrong
-  Cause cause{.mistake = mistake::power_friction, .found = shown.exponent};
+  std::string found = fmt::format("|q| = k p^n with n = {:.2f}", shown.exponent);
   if (is(0.0)) {
     const double mean = law.coefficient * c.pressure.sum() / static_cast<double>((c.pressure > 0.0).count());
     const bool of_mean = law.is_coulomb() && std::abs(shown.coefficient / mean - 1.0) <= kSameMean;
-    cause = {of_mean ? mistake::mean_friction : mistake::tresca_friction, shown.coefficient * c.stress_unit};
+    found = fmt::format("Tresca's, with a shear strength of {:.4g} Pa,{}", shown.coefficient * c.stress_unit,
+                        of_mean ? " mu times the mean pressure," : "");
   } else if (is(1.0)) {
-    cause = {mistake::coulomb_friction, shown.coefficient};
+    found = fmt::format("Coulomb's, with a coefficient of {:.4g},", shown.coefficient);
   }
-  cause.subject = fmt::format("\"{}\"{}", solver::to_string(law.kind),
-                              law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : "");
-  return OtherFriction{cause, (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
+  const std::string exponent = law.kind == solver::FrictionKind::power ? fmt::format(", n = {:g}", law.exponent) : "";
+  const std::string sentence =
+      fmt::format("the law of friction is {} instead of \"{}\"{}", found, solver::to_string(law.kind), exponent);
+  return OtherFriction{{sentence}, (c.pressure > 0.0).select(shown.coefficient * c.pressure.pow(shown.exponent), 0.0)};
 }
 
 }  // namespace
-
-std::string sentence(const Cause& cause) {
-  return fmt::format(fmt::runtime(cause.mistake), cause.found, cause.expected, cause.subject) + cause.note;
-}
 
 std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right,
                                             const Regions& regions) {
