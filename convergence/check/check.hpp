@@ -57,8 +57,7 @@ struct Verdict {
 /// Judges a field:
 ///
 ///  1. The errors that right fields of this mesh show, digits and noise of the file, and the quadrature of
-///  the
-///     loads give the allowed maximum of each quantity. tolerance: replaces the mesh's errors in loads,
+///     the loads give the allowed maximum of each quantity. tolerance: replaces the mesh's errors in loads,
 ///     motion, pressure and tractions.
 ///  2. Normal load and pressure, moment and force are compared with the scene's.
 ///  3. |q| is compared with its bound, in the slip ring and in each cell.

@@ -87,8 +87,7 @@ struct Examination {
 ///  1. read_foreign_field() reads it, in_own_conventions() puts it into the scene's units and signs.
 ///  2. pose() computes the displacements under its pressure and tractions.
 ///  3. find_state() gives the rigid motion: under the reported twist, or the scene's if it imposes one, and
-///  the
-///     one that fits Coulomb's law best.
+///     the one that fits Coulomb's law best.
 ///  4. find_reference_on_grid() solves the scene's pressure and tractions on the field's cells and on cells a
 ///     third as large: from them follow the errors that the mesh causes in right fields.
 ///  5. find_deviation() and certify() give the field's own errors.

@@ -207,6 +207,49 @@ Interval interval_of(const Published& published, double own_error) {
   return {std::min(one_end, other_end) - own_error, std::max(one_end, other_end) + own_error};
 }
 
+/// Judges by an interval that was found for the bound.
+Judgement judge_within(const Gate& gate, const Interval& interval, const Json& result) {
+  Judgement judgement = refuse(gate, "");
+  judgement.interval = interval;
+  return judge_by(std::move(judgement), result);
+}
+
+Judgement judge_relative(const Gate& gate, const Json& result, const Json& other) {
+  const auto& [file, within] = std::get<RelativeTo>(gate.bound);
+  const FoundQuantity found = find_quantity(other, gate.quantity);
+  std::string why = died(gate, other);
+  if (why.empty()) why = is_value(found) ? unfinished(gate, other) : missing_text(gate, other, found);
+  if (why.empty() && !(found.value->is_number() && std::abs(found.value->get<double>()) > 0.0)) {
+    why = fmt::format("{} is {}", gate.quantity, found.value->dump());
+  }
+  if (!why.empty()) throw solver::InputError(file.string(), why + "; allowed: a number that is not zero");
+  const double number = found.value->get<double>();
+  const double allowed = within * std::abs(number);
+  return judge_within(gate, {number - allowed, number + allowed}, result);
+}
+
+Judgement judge_published(const Gate& gate, const Json& result) {
+  const auto& published = std::get<Published>(gate.bound);
+  const double own_error = error_of_ours(gate, result);
+  Judgement judgement = judge_within(gate, interval_of(published, own_error), result);
+  judgement.own_error = own_error;
+  const bool within = judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
+  const double half_units = own_number(judgement).value_or(OwnNumber{}).half_units;
+  const double half_unit = published.number.half_unit;
+  const bool known = half_units * half_unit <= half_unit + published.argument_error;
+  const bool undecided = published.expected == Comparison::undecided;
+  if (within && !known) {
+    judgement.outcome = undecided ? Outcome::reported : Outcome::refused;
+    judgement.why = fmt::format(
+        "our own error is {:.3g} half units of the last printed digit, too large for a comparison{}", half_units,
+        undecided ? ": " + published.why : "; reduce our error, or give the reason in `undecided`");
+  } else if (undecided && judgement.outcome == Outcome::passed) {
+    judgement.outcome = Outcome::passed_unexpectedly;
+    judgement.why = "agrees with the published number: remove `undecided`";
+  }
+  return judgement;
+}
+
 /// The reason of the gate file, where it expects this comparison.
 std::string reason_for(const Published& published, Comparison comparison) {
   return published.expected == comparison ? published.why : "";
@@ -231,26 +274,9 @@ double reference_error(const Json& result, const std::string& quantity) {
   return kNaN;
 }
 
-Judgement judge(const Gate& gate, const Json& result) { return judge_by(refuse(gate, ""), result); }
-
-Judgement judge_within(const Gate& gate, const Interval& interval, const Json& result) {
-  Judgement judgement = refuse(gate, "");
-  judgement.interval = interval;
-  return judge_by(std::move(judgement), result);
-}
-
-Judgement judge_relative(const Gate& gate, const Json& result, const Json& other) {
-  const auto& [file, within] = std::get<RelativeTo>(gate.bound);
-  const FoundQuantity found = find_quantity(other, gate.quantity);
-  std::string why = died(gate, other);
-  if (why.empty()) why = is_value(found) ? unfinished(gate, other) : missing_text(gate, other, found);
-  if (why.empty() && !(found.value->is_number() && std::abs(found.value->get<double>()) > 0.0)) {
-    why = fmt::format("{} is {}", gate.quantity, found.value->dump());
-  }
-  if (!why.empty()) throw solver::InputError(file.string(), why + "; allowed: a number that is not zero");
-  const double number = found.value->get<double>();
-  const double allowed = within * std::abs(number);
-  return judge_within(gate, {number - allowed, number + allowed}, result);
+Judgement judge(const Gate& gate, const Json& result, const Json* other) {
+  if (std::holds_alternative<Published>(gate.bound)) return judge_published(gate, result);
+  return other != nullptr ? judge_relative(gate, result, *other) : judge_by(refuse(gate, ""), result);
 }
 
 Judgement refuse(const Gate& gate, const std::string& why) {
@@ -337,28 +363,6 @@ std::optional<OwnNumber> own_number(const Judgement& judgement) {
   const double shown = in_unit_of_publication(published, ours);
   const double scale = std::abs(shown / ours);
   return OwnNumber{shown, judgement.own_error * scale, judgement.own_error * scale / published.number.half_unit};
-}
-
-Judgement judge_published(const Gate& gate, const Json& result) {
-  const auto& published = std::get<Published>(gate.bound);
-  const double own_error = error_of_ours(gate, result);
-  Judgement judgement = judge_within(gate, interval_of(published, own_error), result);
-  judgement.own_error = own_error;
-  const bool within = judgement.outcome == Outcome::passed || judgement.outcome == Outcome::passed_unexpectedly;
-  const double half_units = own_number(judgement).value_or(OwnNumber{}).half_units;
-  const double half_unit = published.number.half_unit;
-  const bool known = half_units * half_unit <= half_unit + published.argument_error;
-  const bool undecided = published.expected == Comparison::undecided;
-  if (within && !known) {
-    judgement.outcome = undecided ? Outcome::reported : Outcome::refused;
-    judgement.why = fmt::format(
-        "our own error is {:.3g} half units of the last printed digit, too large for a comparison{}", half_units,
-        undecided ? ": " + published.why : "; reduce our error, or give the reason in `undecided`");
-  } else if (undecided && judgement.outcome == Outcome::passed) {
-    judgement.outcome = Outcome::passed_unexpectedly;
-    judgement.why = "agrees with the published number: remove `undecided`";
-  }
-  return judgement;
 }
 
 std::optional<Comparison> comparison_of(const Judgement& judgement) {

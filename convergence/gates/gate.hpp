@@ -133,20 +133,21 @@ bool is_error(const std::string& quantity);
 /// quantity that is no error; NaN for an error whose reference states none.
 double reference_error(const Json& result, const std::string& quantity);
 
-/// Judges a gate with a bound of its own:
+/// Judges a gate; other: the result to which its bound is relative, else nullptr.
 ///   1. a solve that died, or a study with failed runs, fails a gate of any status;
 ///   2. a gate narrower than kGateMargin allows is refused; a result file need not state its reference's
 ///   error;
 ///   3. a number that is missing, NaN or of a solve that did not reach its tolerance does not hold;
 ///   4. the gate's status makes an outcome of it.
-Judgement judge(const Gate& gate, const Json& result);
-
-/// Judges a gate whose bound is RelativeTo. Throws InputError where the other result has no number, has zero,
-/// or did not reach its tolerance.
-Judgement judge_relative(const Gate& gate, const Json& result, const Json& other);
-
-/// Judges by an interval that was found for the bound.
-Judgement judge_within(const Gate& gate, const Interval& interval, const Json& result);
+/// A published number is compared thus:
+///   1. Our own error is `own_error` of the gate file, or the result states it next to the number
+///      (`uncertainty`) or in an object around it (relative_uncertainty).
+///   2. The numbers agree within half a unit of the last printed digit + argument_error + our own error.
+///   3. Where our own error is larger than the other two, agreement shows nothing: the outcome is `reported`
+///      if the gate file says undecided, else `refused`.
+/// Throws InputError where the other result has no number, has zero, or did not reach its tolerance; and where no
+/// error of our number is known that is compared with a published one.
+Judgement judge(const Gate& gate, const Json& result, const Json* other = nullptr);
 
 /// The row of a judgement in the result of a command: docs/schema/gate.schema.json (gate_report.cpp).
 void to_json(Json& json, const Judgement& judgement);
@@ -166,15 +167,6 @@ std::string rerun_command(const Gate& gate);
 
 /// Value and last digit of a text such as 1.0760, 8.155e-3 or 2/3; none for another text.
 std::optional<PrintedNumber> read_printed(const std::string& text);
-
-/// Judges a gate whose bound is Published.
-///   1. Our own error is `own_error` of the gate file, or the result states it next to the number
-///      (`uncertainty`) or in an object around it (relative_uncertainty).
-///   2. The numbers agree within half a unit of the last printed digit + argument_error + our own error.
-///   3. Where our own error is larger than the other two, agreement shows nothing: the outcome is `reported`
-///      if the gate file says undecided, else `refused`.
-/// Throws InputError where no error of ours is known.
-Judgement judge_published(const Gate& gate, const Json& result);
 
 /// How the numbers compare; none where something is wrong, or the gate has no published number.
 std::optional<Comparison> comparison_of(const Judgement& judgement);

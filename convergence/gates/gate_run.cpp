@@ -123,15 +123,13 @@ Judgement not_compared(const Gate& gate) {
 }
 
 /// other: the result that the gate is relative to, else nullptr.
-Judgement judge(const Gate& gate, const SourceResult& source, const SourceResult* other) {
+Judgement judge_or_refuse(const Gate& gate, const SourceResult& source, const SourceResult* other) {
   std::string refused = source.refused;
   if (refused.empty() && other != nullptr) refused = other->refused;
   if (!refused.empty()) return refuse(gate, refused);
   if (std::holds_alternative<std::monostate>(gate.source)) return not_compared(gate);
   try {
-    if (std::holds_alternative<Published>(gate.bound)) return judge_published(gate, source.result);
-    if (other != nullptr) return judge_relative(gate, source.result, other->result);
-    return judge(gate, source.result);
+    return judge(gate, source.result, other == nullptr ? nullptr : &other->result);
   } catch (const InputError& error) {
     return refuse(gate, error.what());
   }
@@ -173,7 +171,7 @@ std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPo
     const auto* const relative = std::get_if<RelativeTo>(&gate.bound);
     const SourceResult* const other =
         relative == nullptr ? nullptr : &results.at(other_source(gate.source, relative->file));
-    Judgement& judgement = judgements.emplace_back(judge(gate, source, other));
+    Judgement& judgement = judgements.emplace_back(judge_or_refuse(gate, source, other));
     judgement.seconds = std::exchange(source.seconds, 0.0);
     judgement.file_date = source.file_date;
     judgement.dominant_error = find_dominant_error(judgement, pool);

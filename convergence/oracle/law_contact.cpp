@@ -31,8 +31,7 @@ LawContact law_contact(const solver::Scene& scene) {
   if (!reason.empty()) {
     throw solver::InputError(scene.source.string(),
                              fmt::format("its torsion has no exact law: {}; allowed: scenes without a layer "
-                                         "that slipstick solve answers with "
-                                         "--set solver.model=\"exact\"",
+                                         "that slipstick solve answers with --set solver.model=\"exact\"",
                                          reason));
   }
   const bool is_sphere = scene.surfaces.front().shape == solver::Shape::sphere;

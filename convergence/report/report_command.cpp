@@ -193,12 +193,11 @@ RunCommand add_report_command(CLI::App& app) {
                    "files of other programs (TOML): the page compares their answers, times and hard cases")
       ->delimiter(',');
   command->footer(
-      "Example:\n  slipstick report --output build/report\n  slipstick report "
-      "convergence/scenes/ellipse.toml --want twist=1e-2 --output build/ellipse\n  slipstick report "
-      "convergence/scenes/*.toml --quick --output "
-      "build/gallery\nFinished solves are kept: an "
-      "interrupted command continues when it is repeated.\nExit code 0: no verdict is bad; 1: a verdict "
-      "is bad; 2: a page could not be made.");
+      "Example:\n  slipstick report --output build/report\n"
+      "  slipstick report convergence/scenes/ellipse.toml --want twist=1e-2 --output build/ellipse\n"
+      "  slipstick report convergence/scenes/*.toml --quick --output build/gallery\n"
+      "Finished solves are kept: an interrupted command continues when it is repeated.\n"
+      "Exit code 0: no verdict is bad; 1: a verdict is bad; 2: a page could not be made.");
   return [request](std::ostream& text, Json& result) { return run_report(*request, text, result); };
 }
 

@@ -76,19 +76,7 @@ Json exact_profile(const analytic::TorsionState& state) {
   return rows;
 }
 
-/// The scene at one mesh, pressure model and load, by one method.
-struct MeshPoint {
-  Index cells = 0;
-  std::string pressure = {};
-  double moment_ratio = 0.0;
-  std::string method = "coulomb";
-
-  std::vector<std::string> overrides() const {
-    return {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("contact.pressure=\"{}\"", pressure),
-            fmt::format("load.moment_ratio={}", moment_ratio), method_override(method)};
-  }
-  static std::string method_override(const std::string& method) { return fmt::format("solver.method=\"{}\"", method); }
-};
+std::string method_override(const std::string& method) { return fmt::format("solver.method=\"{}\"", method); }
 
 std::string fields_file(double moment_ratio) {
   return fmt::format("fields-{}{}", moment_ratio, solver::fields_ending());
@@ -115,42 +103,40 @@ using Sections = std::map<std::string, std::vector<RunSpec>>;
 
 Sections page_runs(const fs::path& scene, const fs::path& scenes, const ValidationSize& size, const fs::path& folder) {
   Sections runs;
-  const auto add = [&](const char* section, const MeshPoint& point) -> RunSpec& {
-    return runs[section].emplace_back(RunSpec{.scene = scene, .overrides = point.overrides()});
+  const auto at = [&](Index cells, double ratio, const char* method = "coulomb", const char* pressure = "solved") {
+    return RunSpec{
+        .scene = scene,
+        .overrides = {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("contact.pressure=\"{}\"", pressure),
+                      fmt::format("load.moment_ratio={}", ratio), method_override(method)}};
   };
   for (const double ratio : kProfileRatios) {
-    RunSpec& run = add("profiles", {size.loading_cells, "solved", ratio});
+    RunSpec& run = runs["profiles"].emplace_back(at(size.loading_cells, ratio));
     run.fields = folder / fields_file(ratio);
     run.profile = true;
   }
   for (const char* method : kMethods) {
-    for (const double ratio : size.moment_ratios) add("loading", {size.loading_cells, "solved", ratio, method});
+    for (const double ratio : size.moment_ratios) runs["loading"].push_back(at(size.loading_cells, ratio, method));
+    for (const Index cells : size.mesh_cells) runs["methods"].push_back(at(cells, kMethodsRatio, method));
+    for (const Index cells : size.ellipse_cells) {
+      const std::string grid = fmt::format("grid.cells=[{},{}]", cells, cells / 2);
+      runs["ellipse"].push_back({.scene = scenes / "ellipse.toml", .overrides = {grid, method_override(method)}});
+    }
   }
   for (const char* pressure : {"solved", "hertz", "hertz_averaged"}) {
     for (const double ratio : kProfileRatios) {
-      for (const Index cells : size.mesh_cells) add("mesh", {cells, pressure, ratio});
-    }
-  }
-  for (const char* method : kMethods) {
-    for (const Index cells : size.mesh_cells) add("methods", {cells, "solved", kMethodsRatio, method});
-    for (const Index cells : size.ellipse_cells) {
-      RunSpec& run = add("ellipse", {});
-      run.scene = scenes / "ellipse.toml";
-      run.overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2), MeshPoint::method_override(method)};
+      for (const Index cells : size.mesh_cells) runs["mesh"].push_back(at(cells, ratio, "coulomb", pressure));
     }
   }
   for (const Beyond& beyond : beyond_the_paper()) {
     for (const Index cells : size.mesh_cells) {
-      RunSpec& run = add(beyond.name, {cells, "solved", kBeyondRatio});
-      run.overrides.insert(run.overrides.end(), beyond.overrides.begin(), beyond.overrides.end());
+      RunSpec& run = runs[beyond.name].emplace_back(changed(at(cells, kBeyondRatio), beyond.overrides));
       run.profile = cells == size.mesh_cells.back();
     }
   }
   runs["stresses"] = stress_runs(scene, size.mesh_cells);
-  add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
-  RunSpec& cycle = add("cycle", {});
-  cycle.scene = scenes / "torsion_loop.toml";
-  cycle.overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)};
+  runs["errata"].push_back(at(size.loading_cells, kMethodsRatio, "paper"));
+  runs["cycle"].push_back(
+      {.scene = scenes / "torsion_loop.toml", .overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)}});
   return runs;
 }
 

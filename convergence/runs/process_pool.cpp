@@ -108,8 +108,7 @@ class TaskQueue {
     while (next_ < tasks_.size() || busy_ > 0) {
       while (may_start()) start_next();
       for (const auto& [task, failure] : take_finished()) {
-        options_.progress->finished(task->label, task->bytes);
-        records[task->run->name] = record_of(*task->run, failure);
+        records[task->run->name] = record_of(*task, failure);
       }
       if (is_interrupted()) stop("interrupted");
     }
@@ -130,8 +129,7 @@ class TaskQueue {
       } catch (const std::exception& error) {
         failure = error.what();
       }
-      options_.progress->finished(task.label, task.bytes);
-      records[task.run->name] = record_of(*task.run, failure);
+      records[task.run->name] = record_of(task, failure);
       if (is_interrupted()) stop("interrupted");
     }
     return records;
@@ -146,7 +144,10 @@ class TaskQueue {
                                          why, options_.progress->text(), options_.folder.string()));
   }
 
-  SolveRecord record_of(const PreparedRun& run, std::string failure) const {
+  /// Of a task that is done.
+  SolveRecord record_of(const Task& task, std::string failure) const {
+    const PreparedRun& run = *task.run;
+    options_.progress->finished(task.label, task.bytes);
     if (std::optional<SolveRecord> found = find(cache_, run)) return *std::move(found);
     if (failure.empty()) failure = "its result is not on disk";
     std::cerr << plain_text(fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure));

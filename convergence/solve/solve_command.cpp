@@ -278,8 +278,7 @@ RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
       "  slipstick solve convergence/scenes/cone.toml --model exact\n"
       "  slipstick solve convergence/scenes/ellipse.toml --accuracy 1e-3\n"
       "Exit code 0: converged; 1: not converged, or accuracy not reached; the result is written; 2: bad "
-      "input, "
-      "a load beyond gross slip, or --model exact where no exact answer is known.");
+      "input, a load beyond gross slip, or --model exact where no exact answer is known.");
   return running(command, words, run_solve);
 }
 

@@ -80,8 +80,7 @@ const solver::SettingKeys& study_keys() {
       {"vary.values", KeyType::values, "", kRequired, kAny, "The values of the key."},
       {"quantities", KeyType::texts, "", "all that have an expected order", kAny,
        "Paths into a result, as in `quantity` of a gate; and `stress_error.l1`, `.l2`, `.max`, of the "
-       "stresses at "
-       "0.4 contact radii of depth."}};
+       "stresses at 0.4 contact radii of depth."}};
   return keys;
 }
 

@@ -68,9 +68,8 @@ RunCommand add_study_command(CLI::App& app) {
   request->runs.add_list_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
-      "Finished solves are kept: an interrupted command continues when it is repeated.\nExit code 0: done; "
-      "1: "
-      "some solve did not converge or failed, and is marked; 2: bad input.");
+      "Finished solves are kept: an interrupted command continues when it is repeated.\n"
+      "Exit code 0: done; 1: some solve did not converge or failed, and is marked; 2: bad input.");
   return running(command, request, run_study_request);
 }
 
