@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <string_view>
 #include <tuple>
@@ -16,40 +17,22 @@ namespace {
 /// Only a prefix of long words is compared: the distance costs the product of the lengths.
 constexpr std::size_t kMaxCompared = 100;
 
-/// Names that other programs and books use, and the parts of our keys that mean the same.
-constexpr std::pair<std::string_view, std::string_view> kOtherNames[]{{"E", "young_modulus"},
-                                                                      {"young", "young_modulus"},
-                                                                      {"youngs_modulus", "young_modulus"},
-                                                                      {"elastic_modulus", "young_modulus"},
-                                                                      {"modulus", "young_modulus"},
-                                                                      {"G", "young_modulus"},
-                                                                      {"shear_modulus", "young_modulus"},
-                                                                      {"nu", "poisson_ratio"},
-                                                                      {"poisson", "poisson_ratio"},
-                                                                      {"poissons_ratio", "poisson_ratio"},
-                                                                      {"mu", "friction"},
-                                                                      {"cof", "friction"},
-                                                                      {"friction_coefficient", "friction"},
-                                                                      {"R", "radius"},
-                                                                      {"diameter", "radius"},
-                                                                      {"load", "normal"},
-                                                                      {"normal_load", "normal"},
-                                                                      {"normal_force", "normal"},
-                                                                      {"force", "normal"},
-                                                                      {"weight", "normal"},
-                                                                      {"torque", "moment"},
-                                                                      {"twist_angle", "twist"},
-                                                                      {"rotation", "twist"},
-                                                                      {"twist_deg", "twist"},
-                                                                      {"coating", "layer"},
-                                                                      {"resolution", "cells"},
-                                                                      {"yield", "yield_stress"},
-                                                                      {"yield_strength", "yield_stress"},
-                                                                      {"n", "cells"},
-                                                                      {"max", "below"},
-                                                                      {"min", "above"},
-                                                                      {"limit", "below"},
-                                                                      {"bound", "below"}};
+/// The parts of our keys, and the names that other programs and books use for the same.
+constexpr struct {
+  std::string_view ours;
+  std::array<std::string_view, 7> others;
+} kOtherNames[]{{"young_modulus", {"E", "young", "youngs_modulus", "elastic_modulus", "modulus", "G", "shear_modulus"}},
+                {"poisson_ratio", {"nu", "poisson", "poissons_ratio"}},
+                {"friction", {"mu", "cof", "friction_coefficient"}},
+                {"radius", {"R", "diameter"}},
+                {"normal", {"load", "normal_load", "normal_force", "force", "weight"}},
+                {"moment", {"torque"}},
+                {"twist", {"twist_angle", "rotation", "twist_deg"}},
+                {"layer", {"coating"}},
+                {"cells", {"resolution", "n"}},
+                {"yield_stress", {"yield", "yield_strength"}},
+                {"below", {"max", "limit", "bound"}},
+                {"above", {"min"}}};
 
 /// How the value or the place differs.
 std::string_view note_on(std::string_view other) {
@@ -62,8 +45,9 @@ std::string_view note_on(std::string_view other) {
 
 /// The part of our keys that a part of a key means; itself where the table does not have it.
 std::string meant_by(const std::string& part) {
-  const auto* const found = std::ranges::find(kOtherNames, part, [](const auto& each) { return each.first; });
-  return found == std::end(kOtherNames) ? part : std::string(found->second);
+  const auto* const found =
+      std::ranges::find_if(kOtherNames, [&](const auto& each) { return std::ranges::count(each.others, part) > 0; });
+  return part.empty() || found == std::end(kOtherNames) ? part : std::string(found->ours);
 }
 
 std::size_t last_part(const std::string& key) { return key.rfind('.') + 1; }

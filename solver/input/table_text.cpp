@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <ranges>
@@ -260,10 +259,7 @@ std::size_t find_column(const path& file, const std::string& name, const std::ve
 std::vector<std::string> text_table_names(const path& file) {
   TextTable table(file);
   std::vector<std::string> names;
-  for (const Heading& heading : table.header({})) {
-    std::ranges::transform(heading.name, std::back_inserter(names.emplace_back()),
-                           [](unsigned char c) { return std::tolower(c); });
-  }
+  for (const Heading& heading : table.header({})) names.push_back(lower_case(heading.name));
   return names;
 }
 

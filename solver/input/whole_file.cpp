@@ -6,8 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <map>
 #include <memory>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -121,32 +124,14 @@ fs::path behind_links(fs::path file) {
 }
 
 std::string why_not_written(int error) {
-  std::string_view advice = "name another place";
-  switch (error) {
-    case ENOSPC:
-    case EDQUOT:
-    case EFBIG:
-      advice = "make room there, or name another place";
-      break;
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      advice = "allow it, or name another place";
-      break;
-    case ENOENT:
-    case ENOTDIR:
-      advice = "make its folder, or name another place";
-      break;
-    case EMFILE:
-    case ENFILE:
-      advice = "allow more open files (ulimit -n)";
-      break;
-    case EISDIR:
-      advice = "name a file in that folder";
-      break;
-    default:
-      break;
-  }
+  static const std::map<std::string_view, std::set<int>> remedies{
+      {"make room there, or name another place", {ENOSPC, EDQUOT, EFBIG}},
+      {"allow it, or name another place", {EACCES, EPERM, EROFS}},
+      {"make its folder, or name another place", {ENOENT, ENOTDIR}},
+      {"allow more open files (ulimit -n)", {EMFILE, ENFILE}},
+      {"name a file in that folder", {EISDIR}}};
+  const auto found = std::ranges::find_if(remedies, [&](const auto& remedy) { return remedy.second.contains(error); });
+  const std::string_view advice = found == remedies.end() ? "name another place" : found->first;
   return fmt::format("cannot be written: {}; {}", std::generic_category().message(error), advice);
 }
 
