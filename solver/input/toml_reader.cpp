@@ -133,10 +133,11 @@ struct SceneReader::ReadKeys {
     if (found == keys.end()) throw std::logic_error(fmt::format("the table of keys has no {}", key));
     return found->second;
   }
-  toml::node_view<toml::node> node(const std::string& key) {
+  /// Null where the key is missing.
+  const toml::node* node(const std::string& key) {
     if (!keys.empty()) setting(key);
     read.insert(key);
-    return root.at_path(key);
+    return root.at_path(key).node();
   }
   bool has_below(const std::string& name) const {
     const auto from = keys.lower_bound(name + ".");
@@ -292,11 +293,11 @@ double SceneReader::in_si(double value, double of_length) const {
 
 const Units& SceneReader::units() const { return toml_->units; }
 
-bool SceneReader::has(const std::string& key) { return static_cast<bool>(toml_->node(key)); }
+bool SceneReader::has(const std::string& key) { return toml_->node(key) != nullptr; }
 
-bool SceneReader::is_array(const std::string& key) { return toml_->node(key).is_array(); }
+bool SceneReader::is_array(const std::string& key) { return has(key) && toml_->node(key)->is_array(); }
 
-bool SceneReader::is_text(const std::string& key) { return toml_->node(key).is_string(); }
+bool SceneReader::is_text(const std::string& key) { return has(key) && toml_->node(key)->is_string(); }
 
 std::size_t SceneReader::line(const std::string& key) const {
   const auto found = toml_->root.at_path(key);
@@ -304,23 +305,19 @@ std::size_t SceneReader::line(const std::string& key) const {
 }
 
 std::size_t SceneReader::count(const std::string& key) {
-  const auto found = toml_->node(key);
-  if (!found) return 0;
-  if (!is_array_of_tables(*found.node())) {
-    fail(key, print(*found.node()), fmt::format("tables, each headed [[{}]]", key));
-  }
-  return found.as_array()->size();
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return 0;
+  if (!is_array_of_tables(*found)) fail(key, print(*found), fmt::format("tables, each headed [[{}]]", key));
+  return found->as_array()->size();
 }
 
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
   const Range& allowed = range_for(key, range);
-  const auto found = toml_->node(key);
-  if (!found) return std::nullopt;
-  const auto value = toml_->number(*found.node(), key);
-  if (!value) {
-    fail(key, print(*found.node()), toml_->for_number(*found.node(), key, fmt::format("a number, {}", allowed.words)));
-  }
-  if (!allowed.contains(*value)) fail(key, print(*found.node()), allowed.words);
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return std::nullopt;
+  const auto value = toml_->number(*found, key);
+  if (!value) fail(key, print(*found), toml_->for_number(*found, key, fmt::format("a number, {}", allowed.words)));
+  if (!allowed.contains(*value)) fail(key, print(*found), allowed.words);
   return value;
 }
 
@@ -336,17 +333,15 @@ double SceneReader::number_or(const std::string& key, double otherwise, const Ra
 
 std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& key, const Range& range) {
   const Range& each = range_for(key, range);
-  const auto found = toml_->node(key);
-  if (!found) return std::nullopt;
-  const toml::array* const array = found.as_array();
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return std::nullopt;
+  const toml::array* const array = found->as_array();
   const std::string allowed = fmt::format("[a, b], two numbers, each {}", each.words);
-  if (array == nullptr || array->size() != 2) {
-    fail(key, print(*found.node()), with_point(*found.node(), allowed));
-  }
+  if (array == nullptr || array->size() != 2) fail(key, print(*found), with_point(*found, allowed));
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto value = toml_->number((*array)[i], key);
-    if (!value || !each.contains(*value)) fail(key, print(*found.node()), allowed);
+    if (!value || !each.contains(*value)) fail(key, print(*found), allowed);
     pair[i] = *value;
   }
   return pair;
@@ -366,22 +361,23 @@ std::vector<double> SceneReader::numbers(const std::string& key, const Range& ra
 }
 
 std::vector<std::string> SceneReader::list(const std::string& key) {
-  const auto found = toml_->node(key);
-  if (!found) return {};
-  const toml::array* const array = found.as_array();
-  if (array == nullptr || array->empty()) fail(key, print(*found.node()), "a list, [a, b, ...], of at least one");
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return {};
+  const toml::array* const array = found->as_array();
+  if (array == nullptr || array->empty()) fail(key, print(*found), "a list, [a, b, ...], of at least one");
   std::vector<std::string> elements;
   for (const toml::node& element : *array) elements.push_back(print(element));
   return elements;
 }
 
 std::vector<std::string> SceneReader::texts(const std::string& key) {
-  std::vector<std::string> texts;
   const char* allowed = "a list of strings, [\"a\", \"b\", ...], of at least one";
-  const auto found = toml_->node(key);
-  if (!found) return texts;
-  if (!found.is_array() || found.as_array()->empty()) fail(key, print(*found.node()), allowed);
-  for (const toml::node& element : *found.as_array()) {
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return {};
+  const toml::array* const array = found->as_array();
+  if (array == nullptr || array->empty()) fail(key, print(*found), allowed);
+  std::vector<std::string> texts;
+  for (const toml::node& element : *array) {
     if (!element.is_string()) fail(key, print(element), allowed);
     texts.push_back(*element.value<std::string>());
   }
@@ -389,31 +385,31 @@ std::vector<std::string> SceneReader::texts(const std::string& key) {
 }
 
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {
-  const auto found = toml_->node(key);
-  if (!found) return otherwise;
-  if (!found.is_boolean()) fail(key, print(*found.node()), "true, false");
-  return *found.value<bool>();
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return otherwise;
+  if (!found->is_boolean()) fail(key, print(*found), "true, false");
+  return *found->value<bool>();
 }
 
 std::vector<std::string> SceneReader::assignments(const std::string& key) {
-  const auto found = toml_->node(key);
-  if (!found) return {};
-  if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) return {};
+  if (!found->is_table()) fail(key, print(*found), "a table, { \"key\" = value }");
   std::vector<Leaf> leaves;
-  collect_leaves(*found.as_table(), key + ".", true, leaves);
+  collect_leaves(*found->as_table(), key + ".", true, leaves);
   for (const Leaf& leaf : leaves) toml_->read.insert(leaf.key);
   leaves.clear();
-  collect_leaves(*found.as_table(), "", false, leaves);
+  collect_leaves(*found->as_table(), "", false, leaves);
   std::vector<std::string> assignments;
   for (const Leaf& leaf : leaves) assignments.push_back(fmt::format("{}={}", leaf.key, print(*leaf.value)));
   return assignments;
 }
 
 std::string SceneReader::text(const std::string& key) {
-  const auto found = toml_->node(key);
-  if (!found) fail_missing(key, "a string");
-  if (!found.is_string()) fail(key, print(*found.node()), "a string");
-  return *found.value<std::string>();
+  const auto* const found = toml_->node(key);
+  if (found == nullptr) fail_missing(key, "a string");
+  if (!found->is_string()) fail(key, print(*found), "a string");
+  return *found->value<std::string>();
 }
 
 std::string SceneReader::text_or(const std::string& key, const std::string& otherwise) {
