@@ -69,26 +69,6 @@ class InputFile {
   int descriptor_;
 };
 
-}  // namespace
-
-void require_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
-  InputFile(file, largest, allowed).require_regular();
-}
-
-std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
-  const InputFile input(file, largest, allowed);
-  input.require_regular();
-  return input.read();
-}
-
-bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code error;
-  const auto way = std::filesystem::relative(std::filesystem::absolute(file), std::filesystem::absolute(folder), error);
-  return !error && !way.empty() && *way.begin() != "..";
-}
-
-namespace {
-
 /// The control character with which a text begins, and its bytes in UTF-8; {0, 1}: none. Control characters
 /// are C0 without line feed and tab, C1, and Unicode's that change the direction of text or end a line.
 std::pair<unsigned, std::size_t> steering(std::string_view text) {
@@ -107,7 +87,36 @@ std::pair<unsigned, std::size_t> steering(std::string_view text) {
   return {0, 0};
 }
 
+/// Characters of a complaint that a message shows.
+constexpr std::size_t kMaxComplaint = 2000;
+
+/// A character of several bytes stays whole.
+std::string cut(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  // In UTF-8 all bytes of a character but the first are 10xxxxxx.
+  constexpr unsigned char kContinues = 0x80;
+  constexpr unsigned char kContinuesMask = 0xC0;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & kContinuesMask) == kContinues) --most;
+  return text.substr(0, most) + "...";
+}
+
 }  // namespace
+
+void require_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
+  InputFile(file, largest, allowed).require_regular();
+}
+
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
+  const InputFile input(file, largest, allowed);
+  input.require_regular();
+  return input.read();
+}
+
+bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto way = std::filesystem::relative(std::filesystem::absolute(file), std::filesystem::absolute(folder), error);
+  return !error && !way.empty() && *way.begin() != "..";
+}
 
 std::string printable(std::string_view text) {
   std::string printable;
@@ -131,23 +140,6 @@ std::string shown(std::string_view text) {
   }
   return text.size() > kMaxShown ? printable + "..." : printable;
 }
-
-namespace {
-
-/// Characters of a complaint that a message shows.
-constexpr std::size_t kMaxComplaint = 2000;
-
-/// A character of several bytes stays whole.
-std::string cut(const std::string& text, std::size_t most) {
-  if (text.size() <= most) return text;
-  // In UTF-8 all bytes of a character but the first are 10xxxxxx.
-  constexpr unsigned char kContinues = 0x80;
-  constexpr unsigned char kContinuesMask = 0xC0;
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & kContinuesMask) == kContinues) --most;
-  return text.substr(0, most) + "...";
-}
-
-}  // namespace
 
 InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
                        const std::string& allowed)

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 namespace slipstick::solver {
 
 Range whole(double low, double high) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "solver/elasticity/law/law_kind.hpp"
@@ -227,8 +226,7 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal, std::size_t
   std::vector<Step> steps;
   for (auto& [step, torsion, points] : read) {
     if (needs_normal && !step.normal) reader.number(step.key + ".normal");  // says what is missing
-    const bool translated = step.displacement || step.force != std::array<double, 2>{};
-    if (!torsion && count == 0 && !translated) {
+    if (!torsion && count == 0 && !brings_translation(step)) {
       reader.fail("load.moment_ratio", "(missing)",
                   "exactly one of load.moment_ratio, load.moment, load.twist, or a load.force or "
                   "load.displacement");
@@ -252,6 +250,50 @@ std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>&
   if (find_height_map(surfaces) != nullptr && !reader.has("grid.cells")) return {0, 0};  // as many as samples
   const auto cells = reader.pair("grid.cells");
   return {static_cast<Index>(cells[0]), static_cast<Index>(cells[1])};
+}
+
+Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
+  Scene scene;
+  scene.source = file;
+  scene.name = reader.text_or("name", file.stem().string());
+  reader.measure_in(reader.choice_or("units", 0, kUnitSets));
+  read_shapes(reader, scene);
+  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
+  scene.upper = read_material(reader, "upper");
+  scene.lower = read_material(reader, "lower");
+  scene.layer = read_layer(reader);
+
+  scene.contact.friction = read_friction(reader);
+  scene.contact.pressure = reader.choice_or("contact.pressure", scene.contact.pressure, kPressureModels);
+  if (scene.contact.pressure == PressureModel::file) scene.contact.pressure_file = reader.path("contact.pressure_file");
+  scene.contact.coupling = reader.choice_or("contact.coupling", scene.contact.coupling, kCouplings);
+
+  scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file, scene.first_points);
+  if (scene.steps.size() > 1 || reader.has("cycles")) {
+    scene.cycles = static_cast<int>(reader.number_or("cycles", scene.cycles, cycles_of(scene.steps.size())));
+    if (scene.cycles > 1 && scene.first_points > 1)
+      require_same_loads(reader, scene.steps.back(), scene.steps[scene.first_points - 1]);
+  }
+
+  scene.grid.cells = read_cells(reader, scene.surfaces);
+  scene.grid.extent = reader.find_pair("grid.extent");
+
+  scene.solver.method = reader.choice_or("solver.method", scene.solver.method, kMethods);
+  if (!reader.text_or("solver.program", "").empty()) scene.solver.program = reader.path("solver.program");
+  scene.solver.model = reader.choice_or("solver.model", scene.solver.model, kModels);
+  scene.solver.cell_traction = reader.choice_or("solver.cell_traction", scene.solver.cell_traction, kCellTractions);
+  scene.solver.op = reader.choice_or("solver.operator", scene.solver.op, kOperators);
+  scene.solver.tolerance = reader.number_or("solver.tolerance", scene.solver.tolerance);
+  scene.solver.max_iterations =
+      static_cast<int>(reader.number_or("solver.max_iterations", scene.solver.max_iterations));
+  scene.solver.substeps = static_cast<int>(reader.number_or("solver.substeps", scene.solver.substeps));
+  scene.solver.threads = static_cast<int>(reader.number_or("solver.threads", scene.solver.threads));
+  scene.solver.rounding_seed = static_cast<std::int64_t>(
+      reader.number_or("solver.rounding_seed", static_cast<double>(scene.solver.rounding_seed)));
+  reader.reject_unknown();
+  validate(scene, &reader);
+  scene.units = reader.units().words();
+  return without_last_digits(std::move(scene));
 }
 
 }  // namespace
@@ -307,57 +349,8 @@ std::string to_string(FrictionKind kind) { return word_of(kFrictionLaws, kind); 
 std::string to_string(Method method) { return word_of(kMethods, method); }
 std::string to_string(CellTraction traction) { return word_of(kCellTractions, traction); }
 
-namespace {
-
-Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
-  Scene scene;
-  scene.source = file;
-  scene.name = reader.text_or("name", file.stem().string());
-  reader.measure_in(reader.choice_or("units", 0, kUnitSets));
-  read_shapes(reader, scene);
-  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
-  scene.upper = read_material(reader, "upper");
-  scene.lower = read_material(reader, "lower");
-  scene.layer = read_layer(reader);
-
-  scene.contact.friction = read_friction(reader);
-  scene.contact.pressure = reader.choice_or("contact.pressure", scene.contact.pressure, kPressureModels);
-  if (scene.contact.pressure == PressureModel::file) scene.contact.pressure_file = reader.path("contact.pressure_file");
-  scene.contact.coupling = reader.choice_or("contact.coupling", scene.contact.coupling, kCouplings);
-
-  scene.steps = read_steps(reader, scene.contact.pressure != PressureModel::file, scene.first_points);
-  if (scene.steps.size() > 1 || reader.has("cycles")) {
-    scene.cycles = static_cast<int>(reader.number_or("cycles", scene.cycles, cycles_of(scene.steps.size())));
-    if (scene.cycles > 1 && scene.first_points > 1)
-      require_same_loads(reader, scene.steps.back(), scene.steps[scene.first_points - 1]);
-  }
-
-  scene.grid.cells = read_cells(reader, scene.surfaces);
-  scene.grid.extent = reader.find_pair("grid.extent");
-
-  scene.solver.method = reader.choice_or("solver.method", scene.solver.method, kMethods);
-  if (!reader.text_or("solver.program", "").empty()) scene.solver.program = reader.path("solver.program");
-  scene.solver.model = reader.choice_or("solver.model", scene.solver.model, kModels);
-  scene.solver.cell_traction = reader.choice_or("solver.cell_traction", scene.solver.cell_traction, kCellTractions);
-  scene.solver.op = reader.choice_or("solver.operator", scene.solver.op, kOperators);
-  scene.solver.tolerance = reader.number_or("solver.tolerance", scene.solver.tolerance);
-  scene.solver.max_iterations =
-      static_cast<int>(reader.number_or("solver.max_iterations", scene.solver.max_iterations));
-  scene.solver.substeps = static_cast<int>(reader.number_or("solver.substeps", scene.solver.substeps));
-  scene.solver.threads = static_cast<int>(reader.number_or("solver.threads", scene.solver.threads));
-  scene.solver.rounding_seed = static_cast<std::int64_t>(
-      reader.number_or("solver.rounding_seed", static_cast<double>(scene.solver.rounding_seed)));
-  reader.reject_unknown();
-  validate(scene, &reader);
-  scene.units = reader.units().words();
-  return without_last_digits(std::move(scene));
-}
-
-}  // namespace
-
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  SceneReader reader(file, overrides, scene_keys());
-  return read_scene(reader, file);
+  return read_scene_text(settings_of(file).text, file, overrides);
 }
 
 Scene read_scene_text(const std::string& text, const std::filesystem::path& file,

@@ -228,8 +228,7 @@ std::vector<double*> lengths(Surface& surface) {
 bool is_measured(const Surface& surface) { return kind_of(surface.shape).gap == nullptr; }
 
 const Surface* find_height_map(const std::vector<Surface>& surfaces) {
-  const auto found = std::find_if(surfaces.begin(), surfaces.end(),
-                                  [](const Surface& surface) { return surface.shape == Shape::height_map; });
+  const auto found = std::ranges::find(surfaces, Shape::height_map, &Surface::shape);
   return found == surfaces.end() ? nullptr : &*found;
 }
 

@@ -5,7 +5,6 @@
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
@@ -143,8 +142,7 @@ class Validation {
   void check_method() const {
     if (scene_.solver.method == Method::coulomb) return;
     const Step& step = scene_.steps.front();
-    if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.solver.substeps > 1 || step.displacement ||
-        step.force != std::array<double, 2>{}) {
+    if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.solver.substeps > 1 || brings_translation(step)) {
       refuse("solver.method", fmt::format("\"{}\"", to_string(scene_.solver.method)),
              "coulomb (this method knows one step of torsion about the origin)");
     }
@@ -163,14 +161,12 @@ class Validation {
     }
     const bool asks_hertz =
         scene_.contact.pressure == PressureModel::hertz || scene_.contact.pressure == PressureModel::hertz_averaged;
-    if (asks_hertz && !is_bare(scene_)) {
+    if (asks_hertz && !(is_bare(scene_) && hertzian_radii(scene_.surfaces))) {
       refuse("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
-             "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
-    }
-    if (asks_hertz && !hertzian_radii(scene_.surfaces)) {
-      refuse("contact.pressure", fmt::format("\"{}\"", to_string(scene_.contact.pressure)),
-             "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
-             "along the grid's)");
+             is_bare(scene_)
+                 ? "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
+                   "along the grid's)"
+                 : "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
     }
     if (find_height_map(scene_.surfaces) != nullptr && scene_.grid.extent) {
       refuse("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
