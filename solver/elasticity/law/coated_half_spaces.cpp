@@ -71,8 +71,8 @@ void add_cell(CellSums& sums, const HankelTable& table, double x, double y, doub
 
 /// Adds what the bases add to tables. A cell of a square grid whose mirror about the diagonal is in the grid
 /// writes that too.
-void add_bases(std::vector<std::vector<double>>& tables, std::span<const Component> components, const Grid& offsets,
-               double thickness, const HankelTable& table, int threads) {
+void add_bases(Tables& tables, std::span<const Component> components, const Grid& offsets, double thickness,
+               const HankelTable& table, int threads) {
   const double h1 = offsets.h1 / thickness;
   const double h2 = offsets.h2 / thickness;
   const auto write = [&](Index k1, Index k2, const CellSums& sums) {
@@ -142,15 +142,13 @@ HankelTable::Values CoatedHalfSpaces::beyond_layers(double x) const {
           0.5 * kOverTwoPi * (across - along), kOverTwoPi * (layers.coupling - whole.coupling)};
 }
 
-std::vector<std::vector<double>> CoatedHalfSpaces::influence_tables(std::span<const Component> components,
-                                                                    const Grid& offsets, int threads) const {
-  const bool smooth = cell_traction_ == CellTraction::smooth;
-  const Grid constant{offsets.n1 + smooth, offsets.n2 + smooth, offsets.h1, offsets.h2};
-  auto tables = layers_.influence_tables(components, constant, threads);
-  if (radial_) add_bases(tables, components, constant, thickness_, *radial_, threads);
-  for (std::size_t c = 0; smooth && c < components.size(); ++c)
-    tables[c] = smooth_table(tables[c], parity(components[c]), offsets.n1, offsets.n2);
-  return tables;
+Tables CoatedHalfSpaces::influence_tables(std::span<const Component> components, const Grid& offsets,
+                                          int threads) const {
+  return tables_of(cell_traction_, components, offsets, [&](const Grid& grid) {
+    Tables tables = layers_.influence_tables(components, grid, threads);
+    if (radial_) add_bases(tables, components, grid, thickness_, *radial_, threads);
+    return tables;
+  });
 }
 
 void CoatedHalfSpaces::inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,

@@ -25,8 +25,7 @@ class CoatedHalfSpaces final : public ElasticLaw {
   CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper,
                    CellTraction cell_traction = CellTraction::constant);
 
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
-                                                    int threads = 1) const override;
+  Tables influence_tables(std::span<const Component> components, const Grid& offsets, int threads = 1) const override;
 
   /// The exact inverse of wave_compliance() along and across a wave's vector.
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,

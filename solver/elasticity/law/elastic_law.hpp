@@ -45,6 +45,9 @@ struct PlaneWave {
 /// Distinct entries of a symmetric symbol: p11, p12, p22. A normal symbol is p11, and the others are zero.
 using Symbol = std::array<double, 3>;
 
+/// A table of influence coefficients for each of some components.
+using Tables = std::vector<std::vector<double>>;
+
 /// The elastic law of an interface: the displacement u of the lower surface less the upper one's, by the
 /// traction q on the lower one. It is linear, symmetric, positive definite, homogeneous and isotropic. This
 /// class is the solver's only access to elasticity.
@@ -58,8 +61,8 @@ class ElasticLaw {
   /// The displacement at a cell's centre by a unit traction on another cell, at the offsets (k1 h1, k2 h2),
   /// 0 <= k1 < n1, 0 <= k2 < n2 of a grid, row by row: a table for each component. The other quadrants follow
   /// by parity(). Units of length times compliance. `threads` share the work and change no bit.
-  virtual std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
-                                                            int threads = 1) const = 0;
+  virtual Tables influence_tables(std::span<const Component> components, const Grid& offsets,
+                                  int threads = 1) const = 0;
 
   /// Inverses of the symbol of (K11, K12, K22), or of K33, at some waves on cells of h1 by h2, for a
   /// preconditioner: they may be approximate, but must be symmetric and positive definite.

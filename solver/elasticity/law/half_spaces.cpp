@@ -46,8 +46,7 @@ constexpr double kSecondDifference = 1.0 / 24.0;
 /// The same cell with the axes exchanged.
 CellIntegrals exchanged(const CellIntegrals& c) { return {c.yy, c.xx, c.xy, c.y, c.x}; }
 
-}  // namespace
-
+/// The table of smooth cell tractions, m1 x m2, from one of constant ones. sign: the parity of its component.
 std::vector<double> smooth_table(const std::vector<double>& constant, Parity sign, Index m1, Index m2) {
   const auto at = [&](Index k1, Index k2) {
     const int factor = (k1 < 0 ? sign.x1 : 1) * (k2 < 0 ? sign.x2 : 1);
@@ -62,6 +61,18 @@ std::vector<double> smooth_table(const std::vector<double>& constant, Parity sig
     }
   }
   return smooth;
+}
+
+}  // namespace
+
+Tables tables_of(CellTraction cell_traction, std::span<const Component> components, const Grid& offsets,
+                 const std::function<Tables(const Grid&)>& constant) {
+  if (cell_traction == CellTraction::constant) return constant(offsets);
+  Tables tables = constant({offsets.n1 + 1, offsets.n2 + 1, offsets.h1, offsets.h2});
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    tables[c] = smooth_table(tables[c], parity(components[c]), offsets.n1, offsets.n2);
+  }
+  return tables;
 }
 
 double sharpening(CellTraction cell_traction, double phase1, double phase2) {
@@ -84,24 +95,17 @@ ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
   };
 }
 
-std::vector<std::vector<double>> HalfSpaces::influence_tables(std::span<const Component> components,
-                                                              const Grid& offsets, int threads) const {
-  if (cell_traction_ == CellTraction::constant) return tables_of_constant(components, offsets, threads);
-  const Grid one_more{offsets.n1 + 1, offsets.n2 + 1, offsets.h1, offsets.h2};
-  auto tables = tables_of_constant(components, one_more, threads);
-  for (std::size_t c = 0; c < components.size(); ++c) {
-    tables[c] = smooth_table(tables[c], parity(components[c]), offsets.n1, offsets.n2);
-  }
-  return tables;
+Tables HalfSpaces::influence_tables(std::span<const Component> components, const Grid& offsets, int threads) const {
+  return tables_of(cell_traction_, components, offsets,
+                   [&](const Grid& grid) { return tables_of_constant(components, grid, threads); });
 }
 
-std::vector<std::vector<double>> HalfSpaces::tables_of_constant(std::span<const Component> components,
-                                                                const Grid& offsets, int threads) const {
+Tables HalfSpaces::tables_of_constant(std::span<const Component> components, const Grid& offsets, int threads) const {
   const Index m1 = offsets.n1;
   const Index m2 = offsets.n2;
   const double h1 = offsets.h1;
   const double h2 = offsets.h2;
-  std::vector<std::vector<double>> tables;
+  Tables tables;
   for (std::size_t c = 0; c < components.size(); ++c) tables.emplace_back(static_cast<std::size_t>(m1 * m2));
   // Rows are integrated in groups, so that mirrored ones are written by whole cache lines.
   constexpr Index kGroup = 8;

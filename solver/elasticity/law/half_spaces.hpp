@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -39,8 +40,7 @@ class HalfSpaces final : public ElasticLaw {
   /// With CellTraction::smooth, 1/24 of its second differences along both axes is subtracted from each
   /// coefficient: constant tractions reduce a wave of wave vector xi by the factor
   /// 1 - (xi_1^2 h1^2 + xi_2^2 h2^2)/24, which this corrects for any contact shape.
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
-                                                    int threads = 1) const override;
+  Tables influence_tables(std::span<const Component> components, const Grid& offsets, int threads = 1) const override;
 
   /// Tractions of wave vector xi, n = xi/|xi|, move the surface by (S I - N n n^T)/|xi| times them along it
   /// and by C33/|xi| times them across (transforms of the solutions of Cerruti and Boussinesq: 1/r becomes
@@ -60,16 +60,16 @@ class HalfSpaces final : public ElasticLaw {
   void add_to(CacheKey& key) const override;
 
  private:
-  std::vector<std::vector<double>> tables_of_constant(std::span<const Component> components, const Grid& offsets,
-                                                      int threads) const;
+  Tables tables_of_constant(std::span<const Component> components, const Grid& offsets, int threads) const;
 
   ElasticPair pair_;
   CellTraction cell_traction_;
 };
 
-/// The table of smooth cell tractions, from one of constant ones that has one row and one column more.
-/// sign: the parity of its component.
-std::vector<double> smooth_table(const std::vector<double>& constant, Parity sign, Index m1, Index m2);
+/// The tables of cell tractions. constant(offsets): those of constant ones, which are smoothed from tables of one row
+/// and one column more.
+Tables tables_of(CellTraction cell_traction, std::span<const Component> components, const Grid& offsets,
+                 const std::function<Tables(const Grid&)>& constant);
 
 /// The factor of a symbol by second differences: 1 less the sum of theirs over 24. phase: xi h, of a wave
 /// from a cell to the next.

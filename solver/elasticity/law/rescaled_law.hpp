@@ -15,8 +15,7 @@ class RescaledLaw final : public ElasticLaw {
   /// ratio: the new unit of length over that of `law`.
   RescaledLaw(SharedLaw law, double ratio) : law_(std::move(law)), ratio_(ratio) {}
 
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
-                                                    int threads = 1) const override {
+  Tables influence_tables(std::span<const Component> components, const Grid& offsets, int threads = 1) const override {
     Grid there = offsets;
     there.h1 *= ratio_;
     there.h2 *= ratio_;

@@ -19,8 +19,7 @@ class WinklerLayer final : public ElasticLaw {
   WinklerLayer(SharedLaw bodies, double normal_compliance, double tangential_compliance)
       : bodies_(std::move(bodies)), normal_(normal_compliance), tangential_(tangential_compliance) {}
 
-  std::vector<std::vector<double>> influence_tables(std::span<const Component> components, const Grid& offsets,
-                                                    int threads = 1) const override {
+  Tables influence_tables(std::span<const Component> components, const Grid& offsets, int threads = 1) const override {
     auto tables = bodies_->influence_tables(components, offsets, threads);
     for (std::size_t c = 0; c < components.size(); ++c) tables[c].front() += compliance(components[c]);
     return tables;

@@ -20,8 +20,6 @@
 namespace slipstick::solver {
 namespace {
 
-using Tables = std::vector<std::vector<double>>;
-
 constexpr CoatedBody kRigidBody{{std::numeric_limits<double>::infinity(), 0.0}};
 constexpr HalfSpace kSoft{1.0, 0.3};
 constexpr HalfSpace kHard{5.0, 0.2};
@@ -109,7 +107,7 @@ TEST(HankelTable, HasTheTransformsOfExponentials) {
   for (const double r : {1e8, 1e12, 1e150}) EXPECT_LE(error(r), 2e-7);  // the tail 1/r
 }
 
-Tables tables_of(const ElasticLaw& law, const Grid& offsets, int threads = 1) {
+Tables all_tables_of(const ElasticLaw& law, const Grid& offsets, int threads = 1) {
   return law.influence_tables(kAllComponents, offsets, threads);
 }
 
@@ -140,7 +138,7 @@ TEST(RescaledLaw, IsTheLawWithEachOfItsLengthsInTheOtherUnit) {
     for (std::size_t i = 0; i < in_unit.size(); ++i) {
       const RescaledLaw law(in_unit[i], ratio);
       const ElasticLaw& expected = *in_other[i];
-      EXPECT_LE(difference(tables_of(law, offsets), tables_of(expected, offsets)), 1e-12);
+      EXPECT_LE(difference(all_tables_of(law, offsets), all_tables_of(expected, offsets)), 1e-12);
       EXPECT_NEAR(law.least_eigenvalue(1.0, 0.8) / expected.least_eigenvalue(1.0, 0.8), 1.0, 1e-12);
       EXPECT_EQ(law.couples(), expected.couples());
       for (const bool tangential : {false, true}) {
@@ -196,24 +194,24 @@ TEST(CoatedHalfSpaces, HaveTheCoefficientsOfTheFourierIntegral) {
         Case{{{1.0, 0.5}, 0.4, kRigidBody.surface}, {3, 3, 0.5, 1.7}, CellTraction::constant},
         Case{{{20.0, 0.1}, 0.9, kSoft}, {3, 3, 1.0, 1.0}, CellTraction::smooth}}) {
     const HalfSpace other{2.0, 0.1};
-    Tables expected = tables_of(HalfSpaces(elastic_pair(body.surface, other), traction), cell);
+    Tables expected = all_tables_of(HalfSpaces(elastic_pair(body.surface, other), traction), cell);
     for (Index i = 0; i < cell.cells(); ++i) {
       const auto added = added_by_base(body, cell, traction, static_cast<double>(i / cell.n2) * cell.h1,
                                        static_cast<double>(i % cell.n2) * cell.h2);
       for (std::size_t c = 0; c < added.size(); ++c) expected[c][static_cast<std::size_t>(i)] += added[c];
     }
-    EXPECT_LE(difference(tables_of(CoatedHalfSpaces(body, {other}, traction), cell), expected), 2e-13);
+    EXPECT_LE(difference(all_tables_of(CoatedHalfSpaces(body, {other}, traction), cell), expected), 2e-13);
   }
 }
 
 TEST(CoatedHalfSpaces, AreHalfSpacesWhereLayerAndBaseAreAlike) {
   const Grid cell{9, 7, 1.0, 0.8};
-  const Tables plain = tables_of(HalfSpaces(elastic_pair(kSoft, kHard)), cell);
+  const Tables plain = all_tables_of(HalfSpaces(elastic_pair(kSoft, kHard)), cell);
   for (const double thickness : {1e-3, 1.0, 1e4}) {
     const CoatedHalfSpaces law({kSoft, thickness, kSoft}, CoatedBody{kHard, 2.0 * thickness, kHard});
-    EXPECT_LE(difference(tables_of(law, cell), plain), 1e-14);
+    EXPECT_LE(difference(all_tables_of(law, cell), plain), 1e-14);
   }
-  EXPECT_EQ(tables_of(CoatedHalfSpaces({kSoft}, {kHard}), cell), plain);
+  EXPECT_EQ(all_tables_of(CoatedHalfSpaces({kSoft}, {kHard}), cell), plain);
 }
 
 /// A thin layer on a rigid base is Winkler's foundation: cells are independent, and a pressure shortens the
@@ -224,15 +222,15 @@ TEST(CoatedHalfSpaces, AreWinklersFoundationOnARigidBase) {
   Tables expected(6, std::vector<double>(600));
   expected[0][0] = expected[2][0] = kThickness;
   expected[5][0] = kThickness * (1.0 - 2.0 * 0.3) / (2.0 * (1.0 - 0.3));
-  EXPECT_LE(difference(tables_of(law, {30, 20, 1.0, 1.0}), expected), 1e-11);
+  EXPECT_LE(difference(all_tables_of(law, {30, 20, 1.0, 1.0}), expected), 1e-11);
 }
 
 TEST(CoatedHalfSpaces, ChangeNoBitWithThreadsAndMirrorAlongTheDiagonal) {
   const CoatedHalfSpaces law({kSoft, 0.3, kHard}, {kHard, 2.0, kSoft});
   for (const Grid& cell : {Grid{9, 6, 1.0, 1.0}, Grid{6, 9, 1.0, 1.0}, Grid{7, 7, 1.0, 0.5}}) {
-    const Tables tables = tables_of(law, cell);
-    for (const int threads : {2, 5}) EXPECT_EQ(tables_of(law, cell, threads), tables);
-    const Tables turned = tables_of(law, {cell.n2, cell.n1, cell.h2, cell.h1});
+    const Tables tables = all_tables_of(law, cell);
+    for (const int threads : {2, 5}) EXPECT_EQ(all_tables_of(law, cell, threads), tables);
+    const Tables turned = all_tables_of(law, {cell.n2, cell.n1, cell.h2, cell.h1});
     const auto i = static_cast<std::size_t>(cell.n2 + 2);  // offset (1, 2), and there (2, 1)
     const auto j = static_cast<std::size_t>(2 * cell.n1 + 1);
     for (const auto& [c, d] : {std::pair{0U, 2U}, {1U, 1U}, {2U, 0U}, {3U, 4U}, {4U, 3U}, {5U, 5U}})

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <array>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/tests/fields.hpp"
