@@ -29,8 +29,7 @@ GivenContact::GivenContact(const solver::Dimensionless& bodies, solver::Elastici
       bound_rounding(ArrayXd::Zero(pressure.size())),
       traction_rounding(ArrayXd::Zero(pressure.size())),
       rotation(rotation_about_origin(grid, centre)),
-      elastic_displacement(traction.size()) {
-  elasticity.make(grid, solver::tangential_kernel())->apply(traction, elastic_displacement);
+      elastic_displacement(elasticity.make(grid, solver::tangential_kernel())->applied(traction)) {
   displacement = elastic_displacement;
   if (pressure_coupling) displacement += pressure_displacement(*this, grid, pressure);
 }
@@ -42,9 +41,7 @@ std::array<double, 2> GivenContact::force() const {
 
 ArrayXd pressure_displacement(const GivenContact& contact, const Grid& grid, const ArrayXd& pressure) {
   if (!contact.pressure_coupling) return {};
-  ArrayXd u(2 * pressure.size());
-  contact.elasticity.make(grid, solver::coupling_kernel())->apply(pressure, u);
-  return u;
+  return contact.elasticity.make(grid, solver::coupling_kernel())->applied(pressure);
 }
 
 RigidMotions rigid_motions(const GivenContact& contact, const KnownMotion& motion) {

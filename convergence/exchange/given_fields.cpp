@@ -18,9 +18,7 @@ using Eigen::ArrayXd;
 using namespace solver;
 
 ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKernel& kernel, const ArrayXd& to) {
-  ArrayXd u(kernel.outputs * model.grid.cells());
-  solver::elasticity(scene, model, solver::Reduction(model.grid)).make(model.grid, kernel)->apply(to, u);
-  return u;
+  return solver::elasticity(scene, model, solver::Reduction(model.grid)).make(model.grid, kernel)->applied(to);
 }
 
 /// A pressure as the answer to the normal contact: the surfaces' approach is the mean gap under it; the

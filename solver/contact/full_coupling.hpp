@@ -15,11 +15,7 @@ class ShearOpening {
   ShearOpening(const Elasticity& elasticity, const Grid& grid) : op_(elasticity.make(grid, shear_kernel())) {}
 
   /// 2*cells values to cells values.
-  Eigen::ArrayXd operator()(const Eigen::ArrayXd& traction) {
-    Eigen::ArrayXd u(op_->grid().cells());
-    op_->apply(traction, u);
-    return -u;
-  }
+  Eigen::ArrayXd operator()(const Eigen::ArrayXd& traction) { return -op_->applied(traction); }
 
  private:
   Cached<LinearOperator> op_;

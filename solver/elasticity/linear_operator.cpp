@@ -33,6 +33,13 @@ Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
   return Part::diagonal;
 }
 
+void mirror_rows(double* field, Index n, const IndexRange& rows) {
+  double* const second = field + n * n;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = rows.first; i < rows.last; ++i) second[j * n + i] = -field[i * n + j];
+  }
+}
+
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticLaw& law, const OperatorOptions& options) {
   const bool whole = part_of(grid, kernel, options.diagonal) == Part::whole;

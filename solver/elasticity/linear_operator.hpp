@@ -66,6 +66,13 @@ class LinearOperator {
               std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
   }
 
+  /// The same in new memory.
+  Field applied(const Field& traction) {
+    Field displacement(static_cast<Index>(outputs()) * grid_.cells());
+    apply(traction, displacement);
+    return displacement;
+  }
+
   /// The same with packed fields.
   void apply_own(const Field& traction, Field& displacement, Packing& packing) {
     packing.on_grid(traction, displacement, [&](const Field& x, Field& y) { apply_own(x, y); });
@@ -101,6 +108,10 @@ enum class Part { whole, quadrant, diagonal };
 /// in x2, q2 odd in x1 and even in x2. diagonal: true if the diagonal is a mirror. Throws
 /// std::invalid_argument if kernel or grid have no such mirrors.
 Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal);
+
+/// Writes the second component of a field of Part::diagonal on n x n cells from rows of the first, while these are in
+/// cache.
+void mirror_rows(double* field, Index n, const IndexRange& rows);
 
 /// Options of an operator and its preconditioner.
 struct OperatorOptions {

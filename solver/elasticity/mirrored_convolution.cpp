@@ -171,7 +171,8 @@ void MirroredConvolution::do_apply(std::span<const double> traction, std::span<d
   for (Index field = 0; field < fields(); ++field) shared_.to_rows(of_field(field));
   in_row_groups([&](int thread, Index field, Index group) {
     rows_backward(thread, field, group, displacement.data() + field * grid().cells());
-    if (diagonal_) mirror_about_diagonal(group, displacement);
+    const Index n = grid().n1;
+    if (diagonal_) mirror_rows(displacement.data(), n, {group * kLines, std::min((group + 1) * kLines, n)});
   });
 }
 
@@ -259,18 +260,6 @@ void MirroredConvolution::columns_backward_diagonal(int thread, Index group) {
     };
   };
   along1_.backward(column_workspace(thread, 0), columns<double>(0, group), parity_of(0).x1, product);
-}
-
-/// Writes u2(x2, x1) = -u1(x1, x2) from a group of rows of u1, while these are in cache.
-void MirroredConvolution::mirror_about_diagonal(Index group, std::span<double> displacement) const {
-  const Index n = grid().n1;
-  const Index first = group * kLines;
-  const Index last = std::min(first + kLines, n);
-  const double* const u1 = displacement.data();
-  double* const u2 = displacement.data() + n * n;
-  for (Index j = 0; j < n; ++j) {
-    for (Index i = first; i < last; ++i) u2[j * n + i] = -u1[i * n + j];
-  }
 }
 
 }  // namespace slipstick::solver

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "solver/elasticity/linear_operator.hpp"
@@ -48,7 +47,6 @@ class MirroredConvolution final : public LinearOperator {
   void multiply(int thread, Index group);
   void columns_forward_diagonal(int thread, Index group);
   void columns_backward_diagonal(int thread, Index group);
-  void mirror_about_diagonal(Index group, std::span<double> displacement) const;
 
   Index fields() const { return diagonal_ ? 1 : static_cast<Index>(inputs()); }
   Parity parity_of(Index field) const;

@@ -195,8 +195,12 @@ class MirroredInverseSymbol final : public InverseSymbol {
     }
     transform_.each_sample(transformed, [&](int t, Index f, Index i) { store(t, f, i, samples_of(f)); });
     if (!symmetric_) return;
-    in_parts(transform_.threads(), grid_.n1,
-             [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
+    constexpr Index kBlock = 32;  // rows whose columns are read together
+    in_parts(transform_.threads(), grid_.n1, [&](int, Index first, Index last) {
+      for (; first < last; first += kBlock) {
+        mirror_rows(field.data(), grid_.n1, {first, std::min(first + kBlock, last)});
+      }
+    });
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
@@ -343,19 +347,6 @@ class MirroredInverseSymbol final : public InverseSymbol {
   }
 
   const double* spectrum(Index k1) const { return spectrum_.data() + k1 * transform_.row_stride(); }
-
-  /// The second component, from these rows of the first.
-  void store_transposed(double* field, Index first_row, Index last_row) const {
-    constexpr Index kBlock = 32;  // rows whose columns are read together, while they are in cache
-    const Index n = grid_.n1;
-    double* const second = field + grid_.cells();
-    for (Index first = first_row; first < last_row; first += kBlock) {
-      const Index last = std::min(first + kBlock, last_row);
-      for (Index j = 0; j < n; ++j) {
-        for (Index i = first; i < last; ++i) second[j * n + i] = -field[i * n + j];
-      }
-    }
-  }
 
   Grid grid_;
   bool tangential_;

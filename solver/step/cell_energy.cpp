@@ -20,9 +20,7 @@ ArrayXd near_means(const Elasticity& elasticity, const Grid& cells, const BlockK
   const Grid fine = divided(cells, parts);
   ArrayXd q = ArrayXd::Zero(components * cells.cells());
   q[axis * cells.cells() + cells.cells() / 2] = 1.0;
-  q = spread_to(fine, cells, q);
-  ArrayXd u(q.size());
-  elasticity.make(fine, kernel)->apply(q, u);
+  ArrayXd u = elasticity.make(fine, kernel)->applied(spread_to(fine, cells, q));
   if (without_middle) {
     for (Index k = 0; k < u.size(); ++k) {
       const bool middle = (k / fine.n2) % parts == parts / 2 && k % fine.n2 % parts == parts / 2;

@@ -140,8 +140,7 @@ ContinuumGap continuum_gap(const Scene& scene, const Solution& solution, std::sh
   const ArrayXd of_cells = part.restricted(solution.traction / unit.stress_unit);
   const ArrayXd q = spread_to(fine, grid, of_cells);
   const ArrayXd f = spread_to(fine, grid, part.restricted(bound));
-  ArrayXd u(q.size());
-  elasticity.make(fine, tangential_kernel())->apply(q, u);
+  ArrayXd u = elasticity.make(fine, tangential_kernel())->applied(q);
   elasticity.diagonal = false;
   Estimate energy = missing_energy(elasticity, grid, of_cells, tangential_kernel(), torsion_symmetry());
   energy.value += integral(fine, 0.5 * dot_products(q, u), kWithoutMiddle);
@@ -176,8 +175,7 @@ PressureGap pressure_gap(const Scene& scene, const Solution& solution) {
   const ArrayXd h = part.restricted(model.gap);
   Elasticity elasticity = solver::elasticity(fine, model, part);
   elasticity.cache = nullptr;
-  ArrayXd w(p.size());
-  elasticity.make(part.grid(), normal_kernel())->apply(p, w);
+  ArrayXd w = elasticity.make(part.grid(), normal_kernel())->applied(p);
   const Estimate energy = energy_of(part.grid(), 0.5 * p * w);
   w += part.restricted(model.gap);
   const auto [gap, distance] = bounds_of_pressure(part.grid(), p, w, least_compliance(scene, model.pair));

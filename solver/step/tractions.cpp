@@ -29,8 +29,7 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
                               const ContactState& before) {
   if (!moves_by_pressure(scene, model)) return {};
   const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
-  ArrayXd u(2 * pressure.size());
-  op->apply(!before.untouched() ? ArrayXd(pressure - before.normal.pressure) : pressure, u);
+  ArrayXd u = op->applied(!before.untouched() ? ArrayXd(pressure - before.normal.pressure) : pressure);
   // A single cell does not move itself: what transforms leave there is no displacement.
   const double in_contact = ((pressure > 0.0).cast<double>().replicate(2, 1) * u).abs().maxCoeff();
   return in_contact <= kMirrorRounding * u.abs().maxCoeff() ? ArrayXd() : u;

@@ -29,11 +29,7 @@ inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd&
   return largest(a - b) / largest(b);
 }
 
-inline Eigen::ArrayXd applied(LinearOperator& op, const Eigen::ArrayXd& traction) {
-  Eigen::ArrayXd displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
-  op.apply(traction, displacement);
-  return displacement;
-}
+inline Eigen::ArrayXd applied(LinearOperator& op, const Eigen::ArrayXd& traction) { return op.applied(traction); }
 
 /// Poisson's ratios and moduli whose mismatch is not zero.
 inline HalfSpaces dissimilar_pair() { return HalfSpaces(elastic_pair({1.0, 0.3}, {2.5, 0.1})); }
