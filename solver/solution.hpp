@@ -106,6 +106,9 @@ struct QualityNumbers {
   Resolution resolution;
 };
 
+/// The numbers of a step.
+struct StepNumbers : ContactNumbers, StickNumbers, LoadNumbers, EnergyNumbers, QualityNumbers {};
+
 /// The work that a step took, tangential unless another problem is named.
 struct WorkNumbers {
   int turns = 1;                       ///< between pressure and tractions, under full coupling
@@ -138,13 +141,7 @@ struct SolutionFields {
 };
 
 /// The numerical answer at the end of a step, in SI units like the scene.
-struct Solution : SolutionFields,
-                  ContactNumbers,
-                  StickNumbers,
-                  LoadNumbers,
-                  EnergyNumbers,
-                  QualityNumbers,
-                  WorkNumbers {
+struct Solution : SolutionFields, StepNumbers, WorkNumbers {
   Status status = Status::not_converged;
   std::string message;  ///< why it did not converge
   Step loads;           ///< the step as the scene gives it

@@ -90,7 +90,7 @@ solver::Solution describe_given(Scene scene, const GivenFields& fields) {
   result.work.pressure_complementarity = solved.normal.complementarity;
   solver::Solution solution = solver::to_si(std::move(result), model);
   solver::OpenHistory open;
-  open.add({}, solver::end_of(solution), solution.resolution);
+  open.add({}, solution, solution.resolution);
   solution.resolution = solver::with_uncertainty(solution, scene, 0, open.mesh());
   return solution;
 }

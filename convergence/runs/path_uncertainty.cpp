@@ -142,11 +142,11 @@ std::optional<Scene> coarse_scene(const Scene& scene, const Solution& solution, 
 }
 
 /// The ends of the steps up to the first that cannot be solved.
-std::vector<StepEnd> ends_of(const Scene& scene) {
-  std::vector<StepEnd> ends;
+std::vector<LoadNumbers> ends_of(const Scene& scene) {
+  std::vector<LoadNumbers> ends;
   SolveOptions options{.detail = Detail::loads};
   options.observer.step = [&](const Solution& at) {
-    if (at.status == Status::converged) ends.push_back(end_of(at));
+    if (at.status == Status::converged) ends.push_back(at);
   };
   try {
     solve(scene, options);
@@ -160,12 +160,12 @@ std::vector<StepEnd> ends_of(const Scene& scene) {
 /// of parts to kFinerPath times as many, from these to kFinerPath times as many, and so on: at most `count`.
 /// They end where a history breaks off, or an earlier step changes more than the last one.
 std::vector<double> path_changes(Scene scene, std::size_t steps, bool turns, std::size_t count) {
-  const auto number = [&](const StepEnd& end) { return turns ? end.twist : end.moment; };
+  const auto number = [&](const LoadNumbers& end) { return turns ? end.twist_angle : end.moment; };
   std::vector<double> changes;
-  std::vector<StepEnd> before = ends_of(scene);
+  std::vector<LoadNumbers> before = ends_of(scene);
   while (changes.size() < count) {
     scene.solver.substeps *= kFinerPath;
-    const std::vector<StepEnd> after = ends_of(scene);
+    const std::vector<LoadNumbers> after = ends_of(scene);
     if (before.size() < steps || after.size() < steps) break;
     const auto change_of = [&](std::size_t k) {
       return (number(after[k]) - number(before[k])) / number(after[steps - 1]);
@@ -205,9 +205,9 @@ PathUncertainty::PathUncertainty(const Scene& scene, const Solution& solution)
   broke_off_ = !coarse;
   if (broke_off_) return;
   shorten(*coarse, kMaxPathSteps);
-  const std::vector<StepEnd> ends = ends_of(*coarse);
+  const std::vector<LoadNumbers> ends = ends_of(*coarse);
   coarse->solver.substeps *= kFinerPath;
-  const std::vector<StepEnd> finer = ends_of(*coarse);
+  const std::vector<LoadNumbers> finer = ends_of(*coarse);
   double safety = kPathSafety;
   for (std::size_t k = 0; k < std::min(ends.size(), finer.size()); ++k) {
     if (k > 0 && changes_both(step_of(scene, k - 1), step_of(scene, k))) safety = kPathSafety * kBothAtOnce;

@@ -32,12 +32,13 @@ void visit_numbers(State& state, Visit&& visit) {
   auto& normal = state.contact.normal;
   auto& motion = state.contact.motion;
   auto& safeguards = normal.safeguards;
-  auto& [twist, displacement, moment, force, moment_limit] = state.end;
+  auto& end = state.end;
   auto& open = state.open;
   all(state.finished, state.contact.energy, motion.delta1, motion.delta2, motion.twist);
   all(normal.approach, normal.complementarity, normal.load_error, normal.iterations);
   all(safeguards.second_solves, safeguards.halvings, safeguards.gradient_steps, safeguards.breakdowns);
-  all(twist, displacement[0], displacement[1], moment, force[0], force[1], moment_limit);
+  all(end.twist_angle, end.displacement[0], end.displacement[1], end.moment, end.force[0], end.force[1]);
+  all(end.moment_limit);
   all(open.worst, open.last_twist);
   for (auto* const sizes :
        {&open.sum, &open.largest, &open.small_stick, &open.largest_small_stick, &open.last_small_stick}) {

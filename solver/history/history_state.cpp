@@ -6,28 +6,21 @@
 
 namespace slipstick::solver {
 
-StepEnd end_of(const LoadNumbers& numbers) {
-  return {.twist = numbers.twist_angle,
-          .displacement = numbers.displacement,
-          .moment = numbers.moment,
-          .force = numbers.force,
-          .moment_limit = numbers.moment_limit};
-}
-
-Quantities distance(const StepEnd& from, const StepEnd& to) {
+Quantities distance(const LoadNumbers& from, const LoadNumbers& to) {
   const auto apart = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
     return std::hypot(b[0] - a[0], b[1] - a[1]);
   };
-  return {.twist = std::abs(to.twist - from.twist),
+  return {.twist = std::abs(to.twist_angle - from.twist_angle),
           .displacement = apart(from.displacement, to.displacement),
           .moment = std::abs(to.moment - from.moment),
           .force = apart(from.force, to.force)};
 }
 
-void OpenHistory::add(const StepEnd& from, const StepEnd& to, const Resolution& step) {
+void OpenHistory::add(const LoadNumbers& from, const LoadNumbers& to, const Resolution& step) {
+  const double turned = to.twist_angle - from.twist_angle;
   const Quantities changes = distance(from, to);
   const Quantities sizes = distance({}, to);
-  const bool goes_on = (to.twist - from.twist) * last_twist > 0.0;
+  const bool goes_on = turned * last_twist > 0.0;
   for (const auto number : kQuantities) {
     if (changes.*number > 0.0) sum.*number += step.step * changes.*number;  // 0 of an infinite error is 0
     largest.*number = std::max(largest.*number, sizes.*number);
@@ -38,7 +31,7 @@ void OpenHistory::add(const StepEnd& from, const StepEnd& to, const Resolution& 
   }
   worst = std::max(worst, step.step);
   last_small_stick = step.open;
-  last_twist = to.twist - from.twist;
+  last_twist = turned;
 }
 
 Quantities OpenHistory::mesh() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "solver/solution.hpp"
@@ -8,18 +7,8 @@
 
 namespace slipstick::solver {
 
-/// Motion since the first step began, and loads, at the end of a step; in SI units.
-struct StepEnd {
-  double twist = 0.0;
-  std::array<double, 2> displacement{};
-  double moment = 0.0;
-  std::array<double, 2> force{};
-  double moment_limit = 0.0;
-};
-StepEnd end_of(const LoadNumbers& numbers);
-
-/// How far two ends lie apart.
-Quantities distance(const StepEnd& from, const StepEnd& to);
+/// How far the motions and loads at the ends of two steps lie apart.
+Quantities distance(const LoadNumbers& from, const LoadNumbers& to);
 
 /// The mesh error of the steps so far. Absolute errors of steps add up. A larger loop erases a smaller one
 /// from the contact's memory, so that the sum is bounded by twice the largest size that was reached, times
@@ -35,7 +24,7 @@ struct OpenHistory {
   double last_twist = 0.0;      ///< twist of the last step
 
   /// A step from one end to the next.
-  void add(const StepEnd& from, const StepEnd& to, const Resolution& step);
+  void add(const LoadNumbers& from, const LoadNumbers& to, const Resolution& step);
   Quantities mesh() const;
 };
 
@@ -43,7 +32,7 @@ struct OpenHistory {
 struct HistoryState {
   std::size_t finished = 0;  ///< number of finished steps, in all cycles
   ContactState contact;
-  StepEnd end;
+  LoadNumbers end{};  ///< in SI units; a stored state has no limit load
   OpenHistory open;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 #include "solver/step/resolution.hpp"
@@ -32,47 +31,39 @@ void add(StepTotals& totals, const EnergyNumbers& energy, const WorkNumbers& wor
   totals.seconds.total += work.seconds.total;
 }
 
-double between(double from, double to, double part) { return from + part * (to - from); }
-
-/// The load that the contact carries, or its twist, as a load of this kind.
-TorsionLoad as_load(const TorsionLoad& kind, const StepEnd& at) {
-  if (std::holds_alternative<Twist>(kind)) return Twist{at.twist};
+/// The torsion that the contact carries, or its twist, as a load of this kind.
+TorsionLoad as_load(const TorsionLoad& kind, const LoadNumbers& at) {
+  if (std::holds_alternative<Twist>(kind)) return Twist{at.twist_angle};
   if (std::holds_alternative<Moment>(kind)) return Moment{at.moment};
   return MomentRatio{at.moment_limit > 0.0 ? at.moment / at.moment_limit : 0.0};
 }
 
-/// The step with its tangential loads interpolated: `part` of the way from those before.
-Step interpolate_loads(const Step& step, const StepEnd& before, double part) {
-  Step at = step;
-  at.torsion = std::visit(
-      [&](const auto& to) -> TorsionLoad {
-        using Kind = std::remove_cvref_t<decltype(to)>;
-        return Kind{between(std::get<Kind>(as_load(step.torsion, before)).value, to.value, part)};
-      },
-      step.torsion);
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (step.displacement) {
-      (*at.displacement)[i] = between(before.displacement[i], (*step.displacement)[i], part);
-    } else {
-      at.force[i] = between(before.force[i], step.force[i], part);
-    }
+/// The tangential loads that the contact carries, or its motions, in place of a step's.
+Step with_loads(Step step, const LoadNumbers& at) {
+  step.torsion = as_load(step.torsion, at);
+  if (step.displacement) {
+    step.displacement = at.displacement;
+  } else {
+    step.force = at.force;
   }
-  return at;
+  return step;
 }
 
 }  // namespace
 
-std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before) {
+std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const LoadNumbers& before) {
   const int parts = scene.solver.substeps;
   const bool presses = previous != nullptr && previous->normal && previous->normal != step.normal;
   const int pressing = presses ? parts / 2 : 0;
+  const Step pressed = with_loads(step, before);
+  Step unpressed = pressed;
+  if (presses) unpressed.normal = previous->normal;
   std::vector<Step> loads;
   for (int k = 1; k <= pressing; ++k) {
-    loads.push_back(interpolate_loads(step, before, 0.0));
-    loads.back().normal = between(*previous->normal, *step.normal, static_cast<double>(k) / pressing);
+    loads.push_back(on_the_way(unpressed, pressed, static_cast<double>(k) / pressing));
   }
   for (int k = pressing + 1; k < parts; ++k) {
-    loads.push_back(interpolate_loads(step, before, static_cast<double>(k - pressing) / (parts - pressing)));
+    loads.push_back(on_the_way(pressed, step, static_cast<double>(k - pressing) / (parts - pressing)));
   }
   loads.push_back(step);
   return loads;
@@ -97,9 +88,9 @@ HistoryStep solve_history_step(const Scene& scene, const Model& model, HistorySt
     step.last = solve_step(scene, model, {part, detail}, state.contact, progress);
     ++step.solved;
     const StepNumbers numbers = to_si(step.last.numbers, model);
-    const StepEnd end = end_of(numbers.loads);
-    state.open.add(std::exchange(state.end, end), end, numbers.quality.resolution);
-    add(step.totals, numbers.energy, step.last.work);
+    state.open.add(state.end, numbers, numbers.resolution);
+    state.end = numbers;
+    add(step.totals, numbers, step.last.work);
     if (!step.converged()) break;
   }
   return step;

@@ -36,7 +36,7 @@ struct HistoryStep {
 /// motions are interpolated linearly, from their values at the end of the step before. Where the normal load
 /// changes too, the first half of the parts brings it, and the second half the tangential loads; a single
 /// part brings both at once. The first step begins with its normal load.
-std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before);
+std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const LoadNumbers& before);
 
 /// Solves the step of a scene that follows a state, part by part.
 HistoryStep solve_history_step(const Scene& scene, const Model& model, HistoryState before, Detail detail,

@@ -123,10 +123,9 @@ EnergyNumbers describe_energy(const Model& model, const LoadStep& loads, const T
 
 /// NaN for slip that may be rounding.
 SlipDirection direction_of(const TangentialSolution& tangential, const StepNumbers& numbers) {
-  const Certificate& certificate = numbers.quality.certificate;
-  const bool slips =
-      numbers.stick.stick_cells < numbers.contact.contact_cells &&
-      !(numbers.energy.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
+  const Certificate& certificate = numbers.certificate;
+  const bool slips = numbers.stick_cells < numbers.contact_cells &&
+                     !(numbers.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
   return slips ? slip_direction(tangential.traction, tangential.slip) : SlipDirection{std::nan(""), std::nan("")};
 }
 
@@ -134,15 +133,16 @@ SlipDirection direction_of(const TangentialSolution& tangential, const StepNumbe
 
 StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step, const SolvedStep& solved,
                           const RigidMotion& motion, const ArrayXd& slip) {
-  StepNumbers numbers;
-  numbers.contact = describe_contact(scene, model, solved.normal);
-  numbers.stick = describe_stick(model, solved, numbers.contact, slip, step.detail);
-  numbers.loads = describe_loads(model, solved, motion);
-  numbers.energy = describe_energy(model, solved.loads, solved.tangential);
-  numbers.quality = {.certificate = certificate_of(model, solved, numbers.loads),
-                     .resolution = resolution(scene, step.loads, model.grid, solved.loads, solved.tangential,
-                                              numbers.contact.contact_area)};
-  numbers.quality.slip_direction = direction_of(solved.tangential, numbers);
+  const ContactNumbers contact = describe_contact(scene, model, solved.normal);
+  const LoadNumbers loads = describe_loads(model, solved, motion);
+  StepNumbers numbers{contact,
+                      describe_stick(model, solved, contact, slip, step.detail),
+                      loads,
+                      describe_energy(model, solved.loads, solved.tangential),
+                      {}};
+  numbers.certificate = certificate_of(model, solved, loads);
+  numbers.resolution = resolution(scene, step.loads, model.grid, solved.loads, solved.tangential, contact.contact_area);
+  numbers.slip_direction = direction_of(solved.tangential, numbers);
   return numbers;
 }
 

@@ -19,16 +19,8 @@ struct SolvedStep {
   TangentialSolution tangential;
 };
 
-/// The numbers of a step in the model's units; forces, moments and energies over the cell area, counted areas in m^2.
-struct StepNumbers {
-  ContactNumbers contact;
-  StickNumbers stick;
-  LoadNumbers loads;
-  EnergyNumbers energy;
-  QualityNumbers quality;
-};
-
-/// motion: since the first step began. slip: see ContactState.
+/// In the model's units; forces, moments and energies over the cell area, counted areas in m^2. motion: since the first
+/// step began. slip: see ContactState.
 StepNumbers describe_step(const Scene& scene, const Model& model, const StepLoads& step, const SolvedStep& solved,
                           const RigidMotion& motion, const Eigen::ArrayXd& slip);
 

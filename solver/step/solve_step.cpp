@@ -237,7 +237,7 @@ StepResult solve_step(const Scene& scene, const Model& model, const StepLoads& s
       describe_step(scene, model, step, solved, result.motion, before.untouched() ? tangential.slip : onwards);
   result.message = message_of(solved);
   if (solved.normal.status == Status::converged && tangential.status == Status::converged) {
-    result.message = violated_bounds(result.numbers.quality.certificate, promised(scene));
+    result.message = violated_bounds(result.numbers.certificate, promised(scene));
     if (result.message.empty()) result.status = Status::converged;
   }
   if (step.detail == Detail::all) {
@@ -255,35 +255,33 @@ ContactState contact_after(const ContactState& before, const StepResult& step) {
           .traction = solved.tangential.traction,
           .slip = before.untouched() ? solved.tangential.slip : slip_onwards(before, solved),
           .motion = step.motion,
-          .energy = std::max(solved.loads.problem.energy_before, step.numbers.quality.certificate.energy)};
+          .energy = std::max(solved.loads.problem.energy_before, step.numbers.certificate.energy)};
 }
 
 StepNumbers to_si(StepNumbers numbers, const Model& model) {
   const double length = model.length_unit;
   const double area = model.grid.cell_area();
-  auto& [contact, stick, loads, energy, quality] = numbers;
-  contact.normal_load *= model.force_unit();
-  contact.peak_pressure *= model.stress_unit;
-  for (double* const number : {&contact.approach, &contact.contact_radius, &contact.contact_radius_counted,
-                               &stick.stick_radius, &stick.stick_radius_counted})
+  numbers.normal_load *= model.force_unit();
+  numbers.peak_pressure *= model.stress_unit;
+  for (double* const number : {&numbers.approach, &numbers.contact_radius, &numbers.contact_radius_counted,
+                               &numbers.stick_radius, &numbers.stick_radius_counted})
     *number *= length;
   // The mesh leaves more of the stick area open than counting does.
-  stick.stick_area.uncertainty += quality.resolution.stick_area * model.grid_in_m().cell_area();
-  for (double& shift : loads.displacement) shift *= length;
-  for (double* const force : {&loads.force[0], &loads.force[1], &loads.friction_force})
+  numbers.stick_area.uncertainty += numbers.resolution.stick_area * model.grid_in_m().cell_area();
+  for (double& shift : numbers.displacement) shift *= length;
+  for (double* const force : {&numbers.force[0], &numbers.force[1], &numbers.friction_force})
     *force *= area * model.force_unit();
-  for (double* const number : {&loads.moment, &loads.moment_limit, &energy.elastic_energy, &energy.dissipated,
-                               &energy.work, &quality.certificate.energy})
+  for (double* const number : {&numbers.moment, &numbers.moment_limit, &numbers.elastic_energy, &numbers.dissipated,
+                               &numbers.work, &numbers.certificate.energy})
     *number *= area * model.moment_unit();
-  if (loads.limit.centre) {
-    for (double& x : *loads.limit.centre) x *= length;
+  if (numbers.limit.centre) {
+    for (double& x : *numbers.limit.centre) x *= length;
   }
-  quality.resolution.open.displacement *= length;
+  numbers.resolution.open.displacement *= length;
   return numbers;
 }
 
 Solution to_si(StepResult result, const Model& model) {
-  StepNumbers numbers = to_si(std::move(result.numbers), model);
   TangentialSolution& tangential = result.solved.tangential;
   const double stress = model.stress_unit;
   const double length = model.length_unit;
@@ -295,11 +293,7 @@ Solution to_si(StepResult result, const Model& model) {
       .elastic_displacement = times(std::move(tangential.elastic_displacement), length),
       .slip = times(std::move(tangential.slip), length),
       .stick = std::move(tangential.stick)};
-  static_cast<ContactNumbers&>(solution) = numbers.contact;
-  static_cast<StickNumbers&>(solution) = std::move(numbers.stick);
-  static_cast<LoadNumbers&>(solution) = numbers.loads;
-  static_cast<EnergyNumbers&>(solution) = numbers.energy;
-  static_cast<QualityNumbers&>(solution) = numbers.quality;
+  static_cast<StepNumbers&>(solution) = to_si(std::move(result.numbers), model);
   static_cast<WorkNumbers&>(solution) = std::move(result.work);
   solution.status = result.status;
   solution.message = std::move(result.message);

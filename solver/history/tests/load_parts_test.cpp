@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 
@@ -15,7 +13,7 @@ TEST(LoadParts, TheNormalLoadComesFirstWhileTheOthersStay) {
   Step step = before;
   step.normal = 800.0;
   step.torsion = Twist{2e-4};
-  const StepEnd end{.twist = 1e-4, .force = {3.0, 4.0}};
+  const LoadNumbers end{.twist_angle = 1e-4, .force = {3.0, 4.0}, .limit = {}};
   const std::vector<Step> parts = parts_of(scene, step, &before, end);
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_EQ(parts[0].normal, 900.0);
@@ -62,9 +60,7 @@ std::vector<ModelSolution> shaken() {
 double in_energy_norm(const ModelSolution& solution, const Eigen::ArrayXd& q) {
   const Model& model = solution.model;
   const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), *model.law);
-  Eigen::ArrayXd u(q.size());
-  op->apply(q, u);
-  return (q * u).sum() * model.grid.cell_area() * model.moment_unit();
+  return (q * op->applied(q)).sum() * model.grid.cell_area() * model.moment_unit();
 }
 
 /// In each step: dissipated + stored + |change of q|_K^2/2 is the work of the loads at its end. This follows
