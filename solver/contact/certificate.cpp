@@ -19,25 +19,24 @@ Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vector
 
 namespace {
 
-/// Sums over cells that a certificate is made of.
-struct CertificateSums {
-  double friction = 0.0;  ///< of mu p
-  double energy = 0.0;    ///< q.Kq/2
-  double gap = 0.0;
-  double limit = 0.0;   ///< the moment if all slips
-  double moment = 0.0;  ///< of the tractions
-  double force1 = 0.0, force2 = 0.0;
-  double worst = 0.0;  ///< max |q|/(mu p), or NaN
+/// The largest of values, as a sum; NaN stays.
+struct Largest {
+  double value = 0.0;
+  Largest& operator+=(const Largest& other) {
+    value = other.value <= value || std::isnan(value) ? value : other.value;
+    return *this;
+  }
+};
 
-  CertificateSums& operator+=(const CertificateSums& other) {
-    friction += other.friction;
-    energy += other.energy;
-    gap += other.gap;
-    limit += other.limit;
-    moment += other.moment;
-    force1 += other.force1;
-    force2 += other.force2;
-    worst = other.worst <= worst || std::isnan(worst) ? worst : other.worst;
+/// Several sums over cells, and a largest value.
+template <std::size_t N>
+struct SumsAndLargest {
+  std::array<double, N> sums{};
+  Largest largest;
+
+  SumsAndLargest& operator+=(const SumsAndLargest& other) {
+    sums += other.sums;
+    largest += other.largest;
     return *this;
   }
 };
@@ -51,7 +50,8 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
   const Eigen::ArrayXd& q = field.traction;
   const Eigen::ArrayXd& u = field.elastic_displacement;
   const Eigen::ArrayXd& s = field.slip;
-  const auto sums = all.sum<CertificateSums>([&](Index first, Index last, CertificateSums& sum) {
+  using Sums = SumsAndLargest<7>;
+  const auto [sums, worst] = all.sum<Sums>([&](Index first, Index last, Sums& sum) {
     const Index n = last - first;
     const auto bound = friction_bound.segment(first, n);
     const auto q1 = q.segment(first, n);
@@ -64,33 +64,33 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
     // Outside the contact any traction exceeds every bound.
     const auto beyond = (size == 0.0).select(0.0, std::numeric_limits<double>::infinity() + 0.0 * size);
     const double worst = (bound > 0.0).select(size / bound, beyond).template maxCoeff<Eigen::PropagateNaN>();
-    sum += {.friction = bound.sum(),
-            .energy = 0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
-            .gap = (q1 * s1 + q2 * s2 + bound * (s1.square() + s2.square()).sqrt()).sum(),
-            .limit = (bound * (t1.square() + t2.square()).sqrt()).sum(),
-            .moment = (q1 * t1 + q2 * t2).sum(),
-            .force1 = q1.sum(),
-            .force2 = q2.sum(),
-            .worst = worst};
+    const double gap = (q1 * s1 + q2 * s2 + bound * (s1.square() + s2.square()).sqrt()).sum();
+    const double all_slips = (bound * (t1.square() + t2.square()).sqrt()).sum();
+    sum += {{0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(), gap, bound.sum(), all_slips,
+             (q1 * t1 + q2 * t2).sum(), q1.sum(), q2.sum()},
+            {worst}};
   });
+  // q.Kq/2, the gap; the sum of mu p, the moment if all slips; moment and force of the tractions. worst: max |q|/(mu
+  // p).
+  const auto [elastic, gap, friction, limit, carried, force1, force2] = sums;
   // No friction, no traction: nothing to violate.
-  if (sums.friction == 0.0 && sums.worst == 0.0) return {};
+  if (friction == 0.0 && worst.value == 0.0) return {};
 
   Certificate certificate{};
   // NaN and negative values stay.
-  const double energy = before.energy > 0.0 && sums.energy <= before.energy ? before.energy : sums.energy;
+  const double energy = before.energy > 0.0 && elastic <= before.energy ? before.energy : elastic;
   certificate.energy = energy;
-  certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / energy;
+  certificate.gap = gap == 0.0 ? 0.0 : gap / energy;
   const double energy_error = discs.energy_error(q, s, least_eigenvalue);
   certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / energy;
   double rounding = discs.gap_rounding(s, u);
   // Slip is then K q - K q_before - motion; K q_before is no larger than the three other fields together.
-  if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * sums.friction;
+  if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * friction;
   certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
-  const double imbalance = std::abs(sums.moment - moment);
-  certificate.moment = imbalance == 0.0 ? 0.0 : imbalance / sums.limit;  // one cell on the axis: the limit is 0 too
-  certificate.force = std::hypot(sums.force1 - force[0], sums.force2 - force[1]) / sums.friction;
-  certificate.friction_bound = sums.worst - 1.0;
+  const double imbalance = std::abs(carried - moment);
+  certificate.moment = imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
+  certificate.force = std::hypot(force1 - force[0], force2 - force[1]) / friction;
+  certificate.friction_bound = worst.value - 1.0;
   return certificate;
 }
 
@@ -131,31 +131,6 @@ std::string violated_bounds(const Certificate& certificate, const CertificateBou
   return "";
 }
 
-namespace {
-
-struct Largest {
-  double value = 0.0;  ///< NaN stays
-  Largest& operator+=(const Largest& other) {
-    value = other.value <= value || std::isnan(value) ? value : other.value;
-    return *this;
-  }
-};
-
-struct AngleSums {
-  double weight = 0.0;
-  double angles = 0.0;  ///< times their weights
-  Largest largest;
-
-  AngleSums& operator+=(const AngleSums& other) {
-    weight += other.weight;
-    angles += other.angles;
-    largest += other.largest;
-    return *this;
-  }
-};
-
-}  // namespace
-
 SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip) {
   const Index cells = traction.size() / 2;
   const Sweep all = Sweep::whole(cells);
@@ -164,18 +139,20 @@ SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayX
     for (Index i = first; i < last; ++i) sum += {size(i)};
   });
   const double noticeable = kNoticeableSlip * largest.value;
-  const auto sums = all.sum<AngleSums>([&](Index first, Index last, AngleSums& sum) {
+  using Sums = SumsAndLargest<2>;
+  const auto [sums, widest] = all.sum<Sums>([&](Index first, Index last, Sums& sum) {
     for (Index i = first; i < last; ++i) {
       const double weight = size(i);
       if (weight == 0.0) continue;
       const double along = -(traction[i] * slip[i] + traction[i + cells] * slip[i + cells]);
       const double across = traction[i] * slip[i + cells] - traction[i + cells] * slip[i];
       const double angle = std::atan2(std::abs(across), along) * 180.0 / std::numbers::pi;
-      sum += {weight, weight * angle, {weight >= noticeable ? angle : 0.0}};
+      sum += {{weight, weight * angle}, {weight >= noticeable ? angle : 0.0}};
     }
   });
-  if (std::isnan(sums.weight) || std::isnan(sums.angles)) return {std::nan(""), std::nan("")};
-  return {sums.weight > 0.0 ? sums.angles / sums.weight : 0.0, sums.largest.value};
+  const auto [weights, angles] = sums;
+  if (std::isnan(weights) || std::isnan(angles)) return {std::nan(""), std::nan("")};
+  return {weights > 0.0 ? angles / weights : 0.0, widest.value};
 }
 
 }  // namespace slipstick::solver
