@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 
 #include "solver/allocations/allocations.hpp"
+#include "solver/elasticity/tests/kernel_case.hpp"
 #include "solver/fft/fftw.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/tests/fields.hpp"
@@ -36,43 +36,22 @@ ArrayXd applied(InverseSymbol& symbol, ArrayXd field) {
 /// Poisson's ratios, from auxetic to incompressible.
 constexpr double kRatios[] = {-0.9, 0.0, 0.3, 0.5};
 
-struct SymbolCase {
-  std::string name;
-  Grid grid;
-  bool tangential;
-  bool diagonal = false;
+bool has_no_symbol(const KernelCase& tested) { return tested.kernel == coupling_kernel(); }
 
-  BlockKernel kernel() const { return tangential ? tangential_kernel() : normal_kernel(); }
-  Index size() const { return (tangential ? 2 : 1) * grid.cells(); }
-};
-
-void PrintTo(const SymbolCase& tested, std::ostream* stream) { *stream << tested.name; }
-
-std::vector<SymbolCase> symbol_cases() {
-  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 8, 1.0, 0.5},   {7, 1, 0.5, 1.0},   {2, 3, 1e-3, 1e-3},
-                                {16, 16, 1.0, 1.0}, {9, 15, 1.0, 1.0},  {13, 17, 1.0, 2.0}, {37, 31, 1.0, 0.3},
-                                {64, 48, 1.0, 1.5}, {5, 128, 1.0, 1.0}, {9, 9, 2.0, 2.0},   {13, 13, 0.1, 0.1}};
-  std::vector<SymbolCase> cases;
-  for (Grid grid : grids) {
-    for (const bool quadrant : {false, true}) {
-      grid.quadrant = quadrant;
-      for (const bool tangential : {false, true}) {
-        const std::string name = std::string(quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) + "x" +
-                                 std::to_string(grid.n2) + (tangential ? "_tangential" : "_normal");
-        cases.push_back({name, grid, tangential});
-        if (quadrant && tangential && grid.n1 == grid.n2) {
-          cases.push_back({name + "_diagonal", grid, tangential, true});
-        }
-      }
-    }
-  }
-  return cases;
+std::vector<KernelCase> symbol_cases() {
+  std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 8, 1.0, 0.5},   {7, 1, 0.5, 1.0},   {2, 3, 1e-3, 1e-3},
+                          {16, 16, 1.0, 1.0}, {9, 15, 1.0, 1.0},  {13, 17, 1.0, 2.0}, {37, 31, 1.0, 0.3},
+                          {64, 48, 1.0, 1.5}, {5, 128, 1.0, 1.0}, {9, 9, 2.0, 2.0},   {13, 13, 0.1, 0.1}};
+  std::vector<Grid> quadrants = grids;
+  for (Grid& grid : quadrants) grid.quadrant = true;
+  grids.insert(grids.end(), quadrants.begin(), quadrants.end());
+  return cases_without(kernel_cases(grids), has_no_symbol);
 }
 
-class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
+class InverseSymbolOf : public testing::TestWithParam<KernelCase> {
  protected:
   std::unique_ptr<InverseSymbol> make(double nu = 0.3, std::span<double> memory = {}) const {
-    return make_inverse_symbol(GetParam().grid, GetParam().kernel(), pair_of(nu),
+    return make_inverse_symbol(GetParam().grid, GetParam().kernel, pair_of(nu),
                                {.diagonal = GetParam().diagonal, .memory = memory});
   }
   /// One of the fields that the operator is for.
@@ -88,21 +67,18 @@ INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases
 class QuadrantSymbol : public InverseSymbolOf {};
 class DiagonalSymbol : public InverseSymbolOf {};
 
-std::vector<SymbolCase> cases_with(bool diagonal) {
-  std::vector<SymbolCase> cases = symbol_cases();
-  std::erase_if(cases,
-                [&](const SymbolCase& tested) { return !tested.grid.quadrant || (diagonal && !tested.diagonal); });
-  return cases;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantSymbol, testing::ValuesIn(cases_with(false)),
-                         testing::PrintToStringParamName());
-INSTANTIATE_TEST_SUITE_P(Shapes, DiagonalSymbol, testing::ValuesIn(cases_with(true)),
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, QuadrantSymbol,
+    testing::ValuesIn(cases_without(symbol_cases(), [](const KernelCase& tested) { return !tested.grid.quadrant; })),
+    testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Shapes, DiagonalSymbol,
+                         testing::ValuesIn(cases_without(symbol_cases(),
+                                                         [](const KernelCase& tested) { return !tested.diagonal; })),
                          testing::PrintToStringParamName());
 
 /// Also at the ends of the spectrum: signs that alternate, and no change at all.
 TEST_P(InverseSymbolOf, IsSymmetricAndPositiveDefinite) {
-  const auto& [name, grid, tangential, diagonal] = GetParam();
+  const auto& [name, grid, kernel, diagonal] = GetParam();
   ArrayXd rough(GetParam().size());
   for (Index i = 0; i < rough.size(); ++i) rough[i] = (i / grid.n2 + i % grid.n2) % 2 == 0 ? 1.0 : -1.0;
   for (const double nu : kRatios) {
@@ -220,8 +196,8 @@ TEST_P(QuadrantSymbol, IsThatOfTheWholeGrid) {
   const ArrayXd field = random(7);
   for (const double nu : kRatios) {
     const auto whole =
-        make_inverse_symbol({2 * grid.n1, 2 * grid.n2, grid.h1, grid.h2}, GetParam().kernel(), pair_of(nu));
-    const Symmetry symmetry = GetParam().tangential ? torsion_symmetry() : normal_symmetry();
+        make_inverse_symbol({2 * grid.n1, 2 * grid.n2, grid.h1, grid.h2}, GetParam().kernel, pair_of(nu));
+    const Symmetry symmetry = GetParam().tangential() ? torsion_symmetry() : normal_symmetry();
     EXPECT_LE(relative_difference(unfold(grid, applied(*make(nu), field), symmetry),
                                   applied(*whole, unfold(grid, field, symmetry))),
               kSymbolRounding)
@@ -234,7 +210,7 @@ TEST_P(DiagonalSymbol, KeepsTheSymmetryExactly) {
   for (const double nu : kRatios) {
     const ArrayXd result = applied(*make(nu), random(8));
     EXPECT_TRUE((result == mirrored_about_diagonal(result, grid.n1)).all()) << nu;
-    const auto quadrant = make_inverse_symbol(grid, GetParam().kernel(), pair_of(nu));
+    const auto quadrant = make_inverse_symbol(grid, GetParam().kernel, pair_of(nu));
     EXPECT_LE(relative_difference(result, applied(*quadrant, random(8))), kSymbolRounding) << nu;
   }
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/tests/kernel_case.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/tests/fields.hpp"
 
@@ -43,76 +43,53 @@ double coefficient(Component component, const Grid& grid, Index point, Index sou
   return sign * quadrant.back();
 }
 
-struct OperatorCase {
-  std::string name;
-  Grid grid;
-  BlockKernel kernel;
-  bool diagonal = false;
+bool is_whole(const KernelCase& tested) { return !tested.grid.quadrant; }
 
-  bool whole() const { return !grid.quadrant; }
-  std::vector<OperatorKind> kinds() const {
-    if (whole()) return {kKinds.begin(), kKinds.end()};
-    return {OperatorKind::dcfft};
-  }
-};
-
-void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << tested.name; }
-
-std::vector<OperatorCase> operator_cases() {
-  // One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
-  const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},   {16, 16, 1.0, 1.0},
-                                {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0}, {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},
-                                {2, 3, 1e-3, 1e-3}, {3, 5, 1.0, 1.0},   {11, 3, 1.0, 1.0},  {25, 20, 1.0, 1.0}};
-  std::vector<OperatorCase> cases;
-  for (const Grid& grid : grids) {
-    const std::string shape = std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
-    cases.push_back({"normal_" + shape, grid, normal_kernel()});
-    cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
-    cases.push_back({"coupling_" + shape, grid, coupling_kernel()});
-  }
-  std::vector<Grid> quadrants{{1, 1, 1.0, 1.0, true},   {2, 3, 1.0, 0.5, true},   {5, 4, 1.0, 1.0, true},
-                              {16, 16, 1.0, 1.0, true}, {33, 17, 1.0, 1.0, true}, {7, 31, 0.3, 1.0, true},
-                              {37, 5, 1e-3, 2e-3, true}};
-  for (const Index n : {2, 3, 8, 13, 17, 33, 50}) quadrants.push_back({n, n, 0.3, 0.3, true});
-  for (const Grid& grid : quadrants) {
-    const std::string shape = "quadrant_" + std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
-    cases.push_back({"normal_" + shape, grid, normal_kernel()});
-    cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
-    if (grid.n1 == grid.n2) cases.push_back({"diagonal_" + shape, grid, tangential_kernel(), true});
-  }
-  return cases;
+/// The ways to sum on a grid.
+std::vector<OperatorKind> kinds_of(const KernelCase& tested) {
+  if (is_whole(tested)) return {kKinds.begin(), kKinds.end()};
+  return {OperatorKind::dcfft};
 }
 
-class Operator : public testing::TestWithParam<OperatorCase> {
+std::vector<KernelCase> operator_cases() {
+  // One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
+  std::vector<Grid> grids{
+      {1, 1, 1.0, 1.0},         {1, 7, 1.0, 1.0},        {7, 1, 0.5, 1.0},         {16, 16, 1.0, 1.0},
+      {31, 33, 1.0, 0.3},       {64, 48, 1.0, 1.0},      {13, 17, 1.0, 2.0},       {40, 9, 0.2, 1.0},
+      {2, 3, 1e-3, 1e-3},       {3, 5, 1.0, 1.0},        {11, 3, 1.0, 1.0},        {25, 20, 1.0, 1.0},
+      {1, 1, 1.0, 1.0, true},   {2, 3, 1.0, 0.5, true},  {5, 4, 1.0, 1.0, true},   {16, 16, 1.0, 1.0, true},
+      {33, 17, 1.0, 1.0, true}, {7, 31, 0.3, 1.0, true}, {37, 5, 1e-3, 2e-3, true}};
+  for (const Index n : {2, 3, 8, 13, 17, 33, 50}) grids.push_back({n, n, 0.3, 0.3, true});
+  return kernel_cases(grids);
+}
+
+class Operator : public testing::TestWithParam<KernelCase> {
  protected:
   std::unique_ptr<LinearOperator> make(OperatorKind kind, int threads = 1) const {
     const auto& [name, grid, kernel, diagonal] = GetParam();
     return make_operator(kind, grid, kernel, dissimilar_pair(), {.threads = threads, .diagonal = diagonal});
   }
-  ArrayXd random_traction(unsigned seed) const {
-    return random_field(static_cast<Index>(GetParam().kernel.inputs) * GetParam().grid.cells(), seed);
-  }
+  ArrayXd random_traction(unsigned seed) const { return random_field(GetParam().size(), seed); }
 };
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()), testing::PrintToStringParamName());
-
-std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
-  std::vector<OperatorCase> cases = operator_cases();
-  std::erase_if(cases, left_out);
-  return cases;
-}
 
 /// Traction and displacement in the same direction, both components read: all but the coupling and the diagonal.
 class SquareOperator : public Operator {};
 class WholeOperator : public Operator {};
 class QuadrantOperator : public Operator {};
 
-INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator, testing::ValuesIn(cases_without([](const OperatorCase& c) {
-                           return c.kernel.inputs != c.kernel.outputs || c.diagonal;
-                         })),
+INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator,
+                         testing::ValuesIn(cases_without(operator_cases(),
+                                                         [](const KernelCase& c) {
+                                                           return c.kernel.inputs != c.kernel.outputs || c.diagonal;
+                                                         })),
                          testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Shapes, WholeOperator,
-                         testing::ValuesIn(cases_without([](const OperatorCase& c) { return !c.whole(); })),
+                         testing::ValuesIn(cases_without(operator_cases(),
+                                                         [](const KernelCase& c) { return !is_whole(c); })),
+                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantOperator, testing::ValuesIn(cases_without(operator_cases(), is_whole)),
                          testing::PrintToStringParamName());
 
 TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
@@ -127,10 +104,6 @@ TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
       EXPECT_LE(largest(applied(*op, traction) - expected), kOfThreeWays * largest(expected));
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Shapes, QuadrantOperator,
-                         testing::ValuesIn(cases_without([](const OperatorCase& c) { return c.whole(); })),
-                         testing::PrintToStringParamName());
 
 /// With a mirror at the diagonal, q1 determines all of it, to the last bit.
 TEST_P(QuadrantOperator, IsTheDirectSumOfTheUnfoldedField) {
@@ -172,7 +145,7 @@ TEST(DenseMatrix, HoldsTheCoefficientOfEachOffset) {
 }
 
 TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
-  for (const OperatorKind kind : GetParam().kinds()) {
+  for (const OperatorKind kind : kinds_of(GetParam())) {
     const auto op = make(kind);
     const ArrayXd x = random_traction(5);
     const ArrayXd y = random_traction(6);
@@ -192,7 +165,7 @@ TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
 TEST_P(Operator, GivesTheSameBitsAgainWithMoreThreadsAndWithoutAllocating) {
   const ArrayXd traction = random_field_with_zero_rows(GetParam().grid, GetParam().kernel.inputs, 7);
   const ArrayXd other = random_traction(8);
-  for (const OperatorKind kind : GetParam().kinds()) {
+  for (const OperatorKind kind : kinds_of(GetParam())) {
     const long before_setup = allocations();
     const auto one = make(kind);
     EXPECT_GT(allocations(), before_setup) << "the count itself must work";
@@ -220,7 +193,7 @@ TEST_P(Operator, GivesTheSameBitsAgainWithMoreThreadsAndWithoutAllocating) {
 }
 
 TEST_P(Operator, RefusesFieldsOfAnotherSize) {
-  for (const OperatorKind kind : GetParam().kinds()) {
+  for (const OperatorKind kind : kinds_of(GetParam())) {
     const auto op = make(kind);
     const auto cells = static_cast<std::size_t>(op->grid().cells());
     std::vector<double> traction(op->inputs() * cells + 1);
