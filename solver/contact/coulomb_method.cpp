@@ -172,7 +172,6 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                              .refine_multipliers = options.refine_motion,
                              .progress = options.progress};
   const TangentialProblem loads{.friction_bound = problem.friction_bound,
-                                .initial_displacement = {},
                                 .moment = problem.moment,
                                 .twist = problem.twist,
                                 .force = problem.force,

@@ -5,9 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
-#include "solver/contact/normal_contact.hpp"
-#include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/newton/safeguards.hpp"
@@ -17,10 +16,10 @@ namespace slipstick::solver {
 /// A contact whose pressure is known, under a change of its tangential loads. One consistent set of units;
 /// displacements are K q. Motions and slip are measured from the state `start`.
 struct TangentialProblem {
-  Eigen::ArrayXd friction_bound;        ///< mu p of each cell; zero outside the contact
-  Eigen::ArrayXd initial_displacement;  ///< (u1, u2) by the change of pressure, Eq. (12); empty: none
-  std::optional<double> moment;         ///< M_3 over the cell area; or else
-  std::optional<double> twist;          ///< phi_3 itself is imposed
+  Eigen::ArrayXd friction_bound = {};        ///< mu p of each cell; zero outside the contact
+  Eigen::ArrayXd initial_displacement = {};  ///< (u1, u2) by the change of pressure, Eq. (12); empty: none
+  std::optional<double> moment = {};         ///< M_3 over the cell area; or else
+  std::optional<double> twist = {};          ///< phi_3 itself is imposed
   /// (F1, F2) over the cell area, balanced by translations; or else these are imposed. If both are empty
   /// there are no translations: the contact is its own image under half a turn and carries no force.
   std::optional<std::array<double, 2>> force = {};

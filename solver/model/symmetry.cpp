@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include "solver/grid/reduction.hpp"
-
 namespace slipstick::solver {
 
 bool reducible(const Scene& scene) {

@@ -42,11 +42,8 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   return pressure;
 }
 
-NormalSolution given(const Eigen::ArrayXd& pressure) {
-  NormalSolution solution;
-  solution.status = Status::converged;
-  solution.pressure = pressure;
-  return solution;
+NormalSolution given(Eigen::ArrayXd pressure) {
+  return {.status = Status::converged, .message = {}, .pressure = std::move(pressure)};
 }
 
 /// On the part of the grid that the model leaves; the answer is on the whole one.

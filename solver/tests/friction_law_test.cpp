@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "solver/input/tests/scratch_folder.hpp"
-#include "solver/model/make_model.hpp"
-#include "solver/solve.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 
@@ -33,9 +31,7 @@ TEST(FrictionMap, LetsCellsWithoutFrictionSlip) {
   const Index cells = grid.cells();
   const double unit = model.length_unit / model.stress_unit;
   const auto moved = [&](const BlockKernel& kernel, const ArrayXd& field) {
-    ArrayXd u(2 * cells);
-    elasticity(scene, model, Reduction(model.grid)).make(model.grid, kernel)->apply(field, u);
-    return ArrayXd(unit * u);
+    return ArrayXd(unit * elasticity(scene, model, Reduction(model.grid)).make(model.grid, kernel)->applied(field));
   };
   const ArrayXd pressed = moved(coupling_kernel(), steps[0].pressure);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -17,23 +17,11 @@ inline constexpr double kRounding = 1e-12;
 inline constexpr double kTight = 1e-11;
 
 inline TangentialProblem under_moment(const Eigen::ArrayXd& bound, double moment) {
-  TangentialProblem problem;
-  problem.friction_bound = bound;
-  problem.moment = moment;
-  return problem;
+  return {.friction_bound = bound, .moment = moment};
 }
 
 inline TangentialProblem under_twist(const Eigen::ArrayXd& bound, double twist) {
-  TangentialProblem problem;
-  problem.friction_bound = bound;
-  problem.twist = twist;
-  return problem;
-}
-
-inline PaperOptions to_tolerance(double tolerance) {
-  PaperOptions options;
-  options.tolerance = tolerance;
-  return options;
+  return {.friction_bound = bound, .twist = twist};
 }
 
 /// The sphere's friction bounds on a grid, to pose problems that a scene cannot.
@@ -46,7 +34,7 @@ struct Bench {
     limit = moment_limit(model.grid, bound);
   }
   TangentialSolution twist_by_moment(double moment_ratio, double tolerance = kTight) const {
-    return solve_by_paper_method(*op, under_moment(bound, moment_ratio * limit), to_tolerance(tolerance));
+    return solve_by_paper_method(*op, under_moment(bound, moment_ratio * limit), {.tolerance = tolerance});
   }
   Certificate certify_solution(const TangentialSolution& solution, double moment) const {
     return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound, rotation_field(model.grid),

@@ -7,7 +7,6 @@
 #include <map>
 #include <vector>
 
-#include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {

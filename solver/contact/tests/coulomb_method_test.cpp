@@ -25,14 +25,11 @@ struct CoulombBench {
         limit(moment_limit(grid, bound)) {}
 
   TangentialSolution solve(double moment_ratio, double tolerance = 1e-8) const {
-    CoulombOptions options;
-    options.tolerance = tolerance;
-    return solve_by_coulomb_method(elasticity, grid, under_moment(bound, moment_ratio * limit), options);
+    return solve_by_coulomb_method(elasticity, grid, under_moment(bound, moment_ratio * limit),
+                                   {.tolerance = tolerance});
   }
   TangentialSolution solve_twist(double twist, double tolerance = 1e-8) const {
-    CoulombOptions options;
-    options.tolerance = tolerance;
-    return solve_by_coulomb_method(elasticity, grid, under_twist(bound, twist), options);
+    return solve_by_coulomb_method(elasticity, grid, under_twist(bound, twist), {.tolerance = tolerance});
   }
   double moment_of(const TangentialSolution& solution) const {
     return (solution.traction * rotation_field(grid)).sum();
@@ -47,8 +44,7 @@ struct CoulombBench {
 /// K q and the slip afresh, by direct summation.
 Certificate independent_certificate(const CoulombBench& bench, const TangentialSolution& solution, double moment) {
   const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), *bench.elasticity.law);
-  ArrayXd u(solution.traction.size());
-  op->apply(solution.traction, u);
+  const ArrayXd u = op->applied(solution.traction);
   const ArrayXd contact = (bench.bound > 0.0).cast<double>().replicate(2, 1);
   const ArrayXd slip = contact * (u - solution.twist * rotation_field(bench.grid));
   return certify({solution.traction, u, slip}, bench.bound, rotation_field(bench.grid), moment);
@@ -157,10 +153,8 @@ TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
 TEST(CoulombWork, ThatDoesNotSufficeIsSaidWithTheGapThatIsLeft) {
   const CoulombBench bench(24, 24);
   const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
-  CoulombOptions options;
-  options.tolerance = 1e-12;
-  options.max_applications = 2;
-  const TangentialSolution cut = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
+  const TangentialSolution cut =
+      solve_by_coulomb_method(bench.elasticity, bench.grid, problem, {.tolerance = 1e-12, .max_applications = 2});
   EXPECT_EQ(cut.status, Status::not_converged);
   EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, tolerance 1e-12", cut.change)), std::string::npos)
       << cut.message;
@@ -182,9 +176,8 @@ TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
   TangentialProblem problem = under_moment(bench.bound, 0.6 * bench.limit);
   const TangentialSolution plain = bench.solve(0.6, 1e-12);
   problem.initial_displacement = 0.25 * rotation_field(bench.grid);
-  CoulombOptions options;
-  options.tolerance = 1e-12;
-  const TangentialSolution shifted = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
+  const TangentialSolution shifted =
+      solve_by_coulomb_method(bench.elasticity, bench.grid, problem, {.tolerance = 1e-12});
   ASSERT_EQ(shifted.status, Status::converged) << shifted.message;
   EXPECT_NEAR(shifted.twist - plain.twist, 0.25, 1e-10);
   EXPECT_LE(relative_difference(shifted.traction, plain.traction), 1e-6);

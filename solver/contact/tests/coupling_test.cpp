@@ -3,10 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
 #include "solver/tests/limits.hpp"
-#include "solver/tests/model_units.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 /// Dissimilar bodies: pressure moves the surfaces along each other, shear opens and closes the gap.

@@ -8,7 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/tests/limits.hpp"
 

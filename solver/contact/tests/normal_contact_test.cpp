@@ -6,8 +6,6 @@
 #include <numbers>
 
 #include "solver/input/tests/scratch_folder.hpp"
-#include "solver/model/make_model.hpp"
-#include "solver/solve.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/paper_scene.hpp"
 
@@ -77,8 +75,7 @@ TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
   EXPECT_TRUE((p >= 0.0).all());
   EXPECT_NEAR(p.sum() / total, 1.0, kPressureRounding);
 
-  ArrayXd u(p.size());
-  op->apply({p.data(), static_cast<std::size_t>(p.size())}, {u.data(), static_cast<std::size_t>(u.size())});
+  const ArrayXd u = op->applied(p);
   const ArrayXd opening = u + model.gap - solution.approach;
   const double energy = 0.5 * (p * u).sum();
   const double gap = (p * (opening - opening.minCoeff())).sum() / energy;
@@ -106,8 +103,7 @@ TEST(FineLines, LetCellsBearThatCoarseGridsLeaveOut) {
         elasticity, grid, {.gap = gap.reshaped(), .total_pressure = 1e3}, {.tolerance = kTolerance});
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     const ArrayXd& p = solution.pressure;
-    ArrayXd u(grid.cells());
-    elasticity.make(grid, normal_kernel())->apply(p, u);
+    const ArrayXd u = elasticity.make(grid, normal_kernel())->applied(p);
     const ArrayXd opening = (p > 0.0 || gap.reshaped().isFinite()).select(u + gap.reshaped(), kInfinity);
     const double open = (p > 0.0).select(p * (opening - opening.minCoeff()), 0.0).sum();
     EXPECT_LE(open / (0.5 * (p * u).sum()), kTolerance * (1.0 + 1e-3));

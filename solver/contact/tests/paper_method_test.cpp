@@ -6,7 +6,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/tests/limits.hpp"
-#include "solver/tests/model_units.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
@@ -69,7 +68,7 @@ TEST_P(Sphere, AnswersItsTwistWithItsMoment) {
   const Bench bench(32);
   const TangentialSolution by_moment = bench.twist_by_moment(GetParam().moment_ratio);
   const TangentialSolution by_twist =
-      solve_by_paper_method(*bench.op, under_twist(bench.bound, by_moment.twist), to_tolerance(kTight));
+      solve_by_paper_method(*bench.op, under_twist(bench.bound, by_moment.twist), {.tolerance = kTight});
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_EQ(by_twist.twist, by_moment.twist);
   // Slip directions freeze at other iterates, so the two answers differ by the method's error: a gap of 1e-5
@@ -158,10 +157,7 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
 TEST(Result, ReportsWhatItsTractionsCauseNotWhatWasCarriedAlong) {
   const Bench bench(32);
   const TangentialSolution solution = bench.twist_by_moment(0.5);
-  ArrayXd u(solution.traction.size());
-  bench.op->apply({solution.traction.data(), static_cast<std::size_t>(u.size())},
-                  {u.data(), static_cast<std::size_t>(u.size())});
-  EXPECT_TRUE((u == solution.elastic_displacement).all());
+  EXPECT_TRUE((bench.op->applied(solution.traction) == solution.elastic_displacement).all());
 }
 
 // --- nothing to do, too little to do it with, or no answer ---
@@ -233,10 +229,8 @@ TEST(OneCell, OnTheAxisIsNoStickArea) {
 
 TEST(Breakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
   const Bench bench(24);
-  PaperOptions options = to_tolerance(1e-9);
-  options.max_iterations = 3;
-  const TangentialSolution solution =
-      solve_by_paper_method(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
+  const TangentialSolution solution = solve_by_paper_method(*bench.op, under_moment(bench.bound, 0.5 * bench.limit),
+                                                            {.tolerance = 1e-9, .max_iterations = 3});
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_EQ(solution.iterations, 3);
   EXPECT_THAT(solution.message, StartsWith("too many iterations: change "));

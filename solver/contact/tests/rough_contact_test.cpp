@@ -50,7 +50,6 @@ constexpr double kRounding = 1e-12;
 TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
   const RoughFace face(128);
   const auto op = face.elasticity.make(face.grid, normal_kernel());
-  ArrayXd u(face.grid.cells());
   double last = 0.0;
   for (const double pressure : {0.0005, 0.005, 0.03, 0.1, 0.25, 0.45, 0.8, 1.5, 3.0, 8.0}) {
     SCOPED_TRACE(pressure);
@@ -58,7 +57,7 @@ TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
     EXPECT_EQ(found.status, Status::converged) << found.message;
     EXPECT_LE(finest_grid_applications(found.grids), kMostApplications);
     const ArrayXd& p = found.pressure;
-    op->apply(p, u);
+    const ArrayXd u = op->applied(p);
     const ArrayXd opening = u + face.gap;
     EXPECT_GE(p.minCoeff(), 0.0);
     EXPECT_NEAR(p.sum() / face.load(pressure), 1.0, kRounding);
@@ -80,19 +79,14 @@ TEST(RoughContact, TakesFewApplicationsUnderATangentialForce) {
   const ArrayXd bound = 0.3 * face.pressed(0.1).pressure;
   const auto op = face.elasticity.make(face.grid, tangential_kernel());
   const ArrayXd rotation = rotation_field(face.grid);
-  ArrayXd u(2 * face.grid.cells());
   for (const double part : {1e-6, 0.1, 0.5, 0.9}) {
     SCOPED_TRACE(part);
-    TangentialProblem problem{.friction_bound = bound,
-                              .initial_displacement = {},
-                              .moment = 0.0,
-                              .twist = {},
-                              .force = {{part * bound.sum(), 0.0}}};
-    const TangentialSolution found = solve_by_coulomb_method(face.elasticity, face.grid, problem, {});
+    const TangentialSolution found = solve_by_coulomb_method(
+        face.elasticity, face.grid, {.friction_bound = bound, .moment = 0.0, .force = {{part * bound.sum(), 0.0}}});
     EXPECT_EQ(found.status, Status::converged) << found.message;
     EXPECT_LE(finest_grid_applications(found.grids), kTractionApplications);
     EXPECT_NEAR(found.traction.head(bound.size()).sum() / (part * bound.sum()), 1.0, 1e-9);
-    op->apply(found.traction, u);
+    const ArrayXd u = op->applied(found.traction);
     ArrayXd motion = found.twist * rotation;
     motion.head(bound.size()) += found.displacement[0];
     motion.tail(bound.size()) += found.displacement[1];
@@ -107,11 +101,8 @@ TEST(RoughContact, FullContactIsALinearSystem) {
   const auto op = face.elasticity.make(face.grid, normal_kernel());
   const Index n = face.grid.cells();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  ArrayXd column(n);
   for (Index j = 0; j < n; ++j) {
-    const ArrayXd unit = Eigen::VectorXd::Unit(n, j).array();
-    op->apply(unit, column);
-    matrix.col(j).head(n) = column;
+    matrix.col(j).head(n) = op->applied(Eigen::VectorXd::Unit(n, j).array());
     matrix(n, j) = 1.0;
     matrix(j, n) = -1.0;
   }

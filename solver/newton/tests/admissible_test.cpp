@@ -214,14 +214,9 @@ TYPED_TEST(Admissible, GapIsNotANumberWhereADisplacementIsNone) {
 TEST(FrictionGap, VanishesExactlyUnderCoulombsLaw) {
   // Sticks within its bound; slips against its traction, twice; carries nothing where there is no pressure;
   // sticks at its bound.
-  ArrayXd bound(5);
-  bound << 1.0, 5.0, 13.0, 0.0, 5.0;
-  ArrayXd q(10);
-  q << 0.3, -3.0, 5.0, 0.0, 3.0,  //
-      -0.4, -4.0, -12.0, 0.0, 4.0;
-  ArrayXd slip(10);
-  slip << 0.0, 6.0, -10.0, 7.0, 0.0,  //
-      0.0, 8.0, 24.0, -2.0, 0.0;
+  const ArrayXd bound{{1.0, 5.0, 13.0, 0.0, 5.0}};
+  const ArrayXd q{{0.3, -3.0, 5.0, 0.0, 3.0, -0.4, -4.0, -12.0, 0.0, 4.0}};
+  const ArrayXd slip{{0.0, 6.0, -10.0, 7.0, 0.0, 0.0, 8.0, 24.0, -2.0, 0.0}};
   const FrictionDiscs set(bound);
   const auto gap = [&](const ArrayXd& traction) { return set.gap(traction, slip); };
   EXPECT_EQ(gap(q), 0.0);
@@ -235,12 +230,9 @@ TEST(FrictionGap, VanishesExactlyUnderCoulombsLaw) {
 }
 
 TEST(PressureGap, VanishesExactlyWhereOnlyTheClosestCellsPress) {
-  ArrayXd reachable(5);
-  reachable << 1.0, 1.0, 0.0, 1.0, 1.0;
-  ArrayXd p(5);
-  p << 2.0, 3.0, 0.0, 0.0, 0.0;
-  ArrayXd opening(5);
-  opening << 0.5, 0.5, -9.0, 0.5, 0.75;  // the lowest cannot be reached
+  const ArrayXd reachable{{1.0, 1.0, 0.0, 1.0, 1.0}};
+  ArrayXd p{{2.0, 3.0, 0.0, 0.0, 0.0}};
+  const ArrayXd opening{{0.5, 0.5, -9.0, 0.5, 0.75}};  // the lowest cannot be reached
   const PositivePressures set(reachable);
   EXPECT_EQ(set.gap(p, opening), 0.0);
   p[4] = 2.0;
@@ -316,8 +308,7 @@ TEST(FrictionLinearised, PreconditionerMatchesTheSymbolTwice) {
 }
 
 TEST(FrictionLinearised, CountsTheCellsThatChange) {
-  ArrayXd bound(4);
-  bound << 1.0, 1.0, 1.0, 0.0;
+  const ArrayXd bound{{1.0, 1.0, 1.0, 0.0}};
   const FrictionDiscs set(bound);
   TangentSpace space(2, 4);
   ArrayXd z = ArrayXd::Zero(8);
@@ -335,10 +326,8 @@ TEST(FrictionLinearised, CountsTheCellsThatChange) {
 }
 
 TEST(PressuresLinearised, AreFreeInContact) {
-  ArrayXd reachable(4);
-  reachable << 1.0, 1.0, 1.0, 0.0;
-  ArrayXd z(4);
-  z << 2.0, -1.0, 0.0, 3.0;
+  const ArrayXd reachable{{1.0, 1.0, 1.0, 0.0}};
+  ArrayXd z{{2.0, -1.0, 0.0, 3.0}};
   const PositivePressures set(reachable);
   TangentSpace space(1, 4);
   for (Index i = 0; i < 4; ++i) space.set(i, false);
@@ -376,9 +365,9 @@ TEST(Jump, PutsTractionsOnTheTangentThatTheNaturalMapChose) {
 }
 
 TEST(Jump, EndsPressureWhereContactEnds) {
-  const ArrayXd reachable = (ArrayXd(4) << 1.0, 1.0, 1.0, 0.0).finished();
-  const ArrayXd p = (ArrayXd(4) << 2.0, 3.0, 0.0, 0.0).finished();
-  const ArrayXd z = (ArrayXd(4) << 1.0, -1.0, -2.0, 5.0).finished();
+  const ArrayXd reachable{{1.0, 1.0, 1.0, 0.0}};
+  const ArrayXd p{{2.0, 3.0, 0.0, 0.0}};
+  const ArrayXd z{{1.0, -1.0, -2.0, 5.0}};
   ArrayXd step = ArrayXd::Constant(4, 0.25);
   step[1] = step[2] = step[3] = 0.0;  // the linear problem does not move what is not free
   PositivePressures(reachable).add_jump(z, p, step);

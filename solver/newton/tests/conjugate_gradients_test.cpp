@@ -1,14 +1,12 @@
-
 #include <gmock/gmock.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <memory>
 #include <string>
 
-#include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
-#include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
@@ -95,7 +93,7 @@ struct CgBench {
   }
 
   /// (K + stiffness)^-1 c on the tangent space.
-  VectorXd inverse(const VectorXd& c) const { return free * dense_solution(tangent, free.transpose() * c); }
+  VectorXd inverse(const VectorXd& c) const { return free * tangent.fullPivLu().solve(free.transpose() * c); }
   /// The same with c.x = 0 for each column c: the multipliers take out what would violate that.
   VectorXd constrained(const VectorXd& r, const MatrixXd& conditions) const {
     const Index n = tangent.rows();
@@ -106,7 +104,7 @@ struct CgBench {
     saddle.bottomLeftCorner(m, n) = conditions.transpose() * free;
     VectorXd right = VectorXd::Zero(n + m);
     right.head(n) = free.transpose() * r;
-    return free * dense_solution(saddle, right).head(n);
+    return free * saddle.fullPivLu().solve(right).head(n);
   }
   ArrayXd preconditioned(const ArrayXd& r) {
     Packing all(op.grid(), Sweep::whole(op.grid()), space.components());
@@ -177,7 +175,8 @@ TEST_P(CgOn, SolvesUnderNoneOneAndThreeConditions) {
       if (count < 3) continue;
       MatrixXd answers(b.size, count);
       for (Index k = 0; k < count; ++k) answers.col(k) = b.inverse(columns.col(k));
-      const VectorXd multipliers = dense_solution(columns.transpose() * answers, answers.transpose() * r.matrix());
+      const MatrixXd products = columns.transpose() * answers;
+      const VectorXd multipliers = products.fullPivLu().solve(answers.transpose() * r.matrix());
       EXPECT_LE((summary.multipliers - multipliers).norm(), kSolved * multipliers.norm());
     }
   }
@@ -265,7 +264,8 @@ TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
   EXPECT_LE((preconditioner - preconditioner.transpose()).cwiseAbs().maxCoeff(), 1e-13 * largest);
   const MatrixXd projector = b.free * b.free.transpose();
   EXPECT_LE((preconditioner - projector * preconditioner).cwiseAbs().maxCoeff(), 1e-13 * largest);
-  EXPECT_GT(dense_eigenvalues(b.free.transpose() * preconditioner * b.free).minCoeff(), 0.0);
+  const MatrixXd on_space = b.free.transpose() * preconditioner * b.free;
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(on_space).eigenvalues().minCoeff(), 0.0);
 
   MatrixXd expected = symbol;
   if (b.space.components() == 2) {

@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "solver/allocations/allocations.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/newton/admissible.hpp"
 

@@ -31,8 +31,7 @@ class Newton : public testing::Test {
   }
   NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) { return run(*bench_.op, *symbol_, q, options); }
   double energy(const ArrayXd& q) {
-    ArrayXd u(q.size());
-    bench_.op->apply(q, u);
+    const ArrayXd u = bench_.op->applied(q);
     return 0.5 * (q * u).sum();
   }
 

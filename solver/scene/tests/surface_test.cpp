@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "solver/input/input_error.hpp"
-#include "solver/model/make_model.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/tests/limits.hpp"

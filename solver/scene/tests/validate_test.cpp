@@ -4,8 +4,6 @@
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/tests/complaint.hpp"
-#include "solver/scene/scene.hpp"
-#include "solver/solve.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/paper_scene.hpp"
 

@@ -6,8 +6,6 @@
 #include <numbers>
 
 #include "solver/grid/grid_transfer.hpp"
-#include "solver/model/make_model.hpp"
-#include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -20,8 +18,7 @@ Estimate whole_energy(const Elasticity& elasticity, const Grid& grid, const Arra
                       const Symmetry& symmetry) {
   const Grid fine = divided(grid, 3);
   const ArrayXd parts = spread_to(fine, grid, q);
-  ArrayXd u(parts.size());
-  elasticity.make(fine, kernel)->apply(parts, u);
+  ArrayXd u = elasticity.make(fine, kernel)->applied(parts);
   for (Index k = 0; k < u.size(); ++k)
     if (k / fine.n2 % 3 == 1 && k % fine.n2 % 3 == 1) u[k] = 0.0;
   Estimate energy = missing_energy(elasticity, grid, q, kernel, symmetry);

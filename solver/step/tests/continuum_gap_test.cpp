@@ -10,8 +10,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/grid/grid_transfer.hpp"
-#include "solver/model/make_model.hpp"
-#include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -116,13 +114,11 @@ double saved_on_quarters(const Scene& scene, const Solution& coarse) {
   const Grid fine = divided(model.grid, 4);
   const ArrayXd traction = spread_to(fine, model.grid, coarse.traction / model.stress_unit);
   const ArrayXd bound = model.friction.bound(ArrayXd(coarse.pressure / model.stress_unit));
-  TangentialProblem problem;
-  problem.friction_bound = spread_to(fine, model.grid, bound);
-  problem.moment = (traction * rotation_field(fine)).sum();
+  const TangentialProblem problem{.friction_bound = spread_to(fine, model.grid, bound),
+                                  .moment = (traction * rotation_field(fine)).sum()};
   const Elasticity elasticity = solver::elasticity(scene, model, Reduction(model.grid));
   const TangentialSolution found = solve_by_coulomb_method(elasticity, fine, problem);
-  ArrayXd u(traction.size());
-  elasticity.make(fine, tangential_kernel())->apply(traction, u);
+  const ArrayXd u = elasticity.make(fine, tangential_kernel())->applied(traction);
   return 1.0 - (found.traction * found.elastic_displacement).sum() / (traction * u).sum();
 }
 
@@ -197,15 +193,14 @@ TEST(PressureGap, BoundsTheDistanceFromFinerPressures) {
     const Model& model = fine.model;
     const ArrayXd p = spread_to(model.grid, coarse.grid, ArrayXd(coarse.pressure / model.stress_unit));
     const ArrayXd difference = p - fine.solution.pressure;
-    ArrayXd u(p.size());
-    elasticity(scene, model, Reduction(model.grid)).make(model.grid, normal_kernel())->apply(difference, u);
+    const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, normal_kernel());
     const double in_joule = model.grid.cell_area() * model.moment_unit();
-    const double distance = std::sqrt((difference * u).sum() * in_joule);
+    const double distance = std::sqrt((difference * op->applied(difference)).sum() * in_joule);
     EXPECT_LT(distance, found.distance);
     EXPECT_GT(distance, 0.1 * found.distance);
     // energy(p) - energy(p_fine) = difference.(K p_fine + h) + |difference|^2/2
-    elasticity(scene, model, Reduction(model.grid)).make(model.grid, normal_kernel())->apply(fine.solution.pressure, u);
-    const double saved = (difference * (u + model.gap)).sum() * in_joule + 0.5 * distance * distance;
+    const ArrayXd opening = op->applied(fine.solution.pressure) + model.gap;
+    const double saved = (difference * opening).sum() * in_joule + 0.5 * distance * distance;
     EXPECT_LT(saved, (found.gap + found.quadrature_error) * found.energy);
     EXPECT_GT(saved, 0.0);
   }

@@ -1,7 +1,6 @@
 // Contacts that the grid's edge cuts off are refused; all others are the same on every larger
 // grid of the same cells.
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -9,7 +8,6 @@
 #include <regex>
 #include <utility>
 
-#include "solver/model/make_model.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
