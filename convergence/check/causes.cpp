@@ -32,7 +32,11 @@ constexpr std::array<Body, 2> kBodies{{{&Scene::lower, "lower"}, {&Scene::upper,
 double off_from(const Examination& e, const Scene& scene) {
   try {
     const solver::Model model = solver::make_model(scene);
-    const GivenContact contact = pose(e.read.field, model, model.threads);
+    ForeignField field = e.read.field;
+    field.pressure = e.contact.stress_unit * e.contact.pressure;
+    field.traction = e.contact.stress_unit * e.contact.traction;
+    field.pressure_rounding = field.traction_rounding = 0.0 * field.pressure;
+    const GivenContact contact = pose(field, model, model.threads);
     const auto right = find_scene_pressure(contact, scene, model);
     return right ? right->off : std::numeric_limits<double>::infinity();
   } catch (const solver::InputError&) {  // no scene that can be solved

@@ -130,8 +130,13 @@ std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver:
            (solver::cell_x2(grid) + contact.centre[1]).abs() > half2)
               .select(std::numeric_limits<double>::infinity(), gap);
   }
-  const double total = *scene.steps.front().normal / contact.force_unit() / grid.cell_area();
-  return solver::solve_normal_contact(contact.elasticity, grid, {.gap = gap, .total_pressure = total}).pressure;
+  const solver::Reduction part(grid, gap, gap.isFinite().cast<double>());
+  gap = part.restricted(std::move(gap));
+  const double area = grid.cell_area() * (part.quadrant() ? 4.0 : 1.0);
+  const double total = *scene.steps.front().normal / contact.force_unit() / area;
+  const auto solved =
+      solver::solve_normal_contact(contact.elasticity, part.grid(), {.gap = gap, .total_pressure = total});
+  return part.expanded(solved.pressure, solver::normal_symmetry());
 }
 
 KnownMotion known_motion(const GivenContact& contact, const solver::Step& load, std::optional<double> twist) {
@@ -188,7 +193,7 @@ void scale_loads(solver::TangentialProblem& problem, double factor) {
 }
 
 solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid& grid,
-                                         solver::TangentialProblem problem) {
+                                         solver::TangentialProblem problem, double tolerance) {
   const ArrayXd& bound = problem.friction_bound;
   const bool mirrored = !problem.force && !problem.displacement && problem.initial_displacement.size() == 0;
   const solver::Reduction part = mirrored ? solver::Reduction(grid, bound, bound) : solver::Reduction(grid, bound);
@@ -196,7 +201,8 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid
   elasticity.diagonal = part.diagonal();
   solver::TangentialProblem own = reduced(problem, part);
   problem = {};  // its fields are large on a fine grid
-  solver::TangentialSolution solution = solve_by_coulomb_method(elasticity, part.grid(), std::move(own));
+  solver::TangentialSolution solution =
+      solve_by_coulomb_method(elasticity, part.grid(), std::move(own), {.tolerance = tolerance});
   const bool usable = solution.status == solver::Status::converged || solution.change <= kIterationGap;
   if (!usable) throw std::runtime_error("the right answer to judge by was not found: " + solution.message);
   solution.traction = part.expanded(std::move(solution.traction), solver::torsion_symmetry());

@@ -64,9 +64,9 @@ double solved_multiple(double factor);
 RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load);
 
 /// Solves a problem on any grid for the contact's bodies, on one quadrant where the bound and the loads have
-/// two mirror axes: only its traction is complete. Throws as find_right_answer().
+/// two mirror axes, to a gap over energy: of its fields only the traction is complete. Throws as find_right_answer().
 solver::TangentialSolution solve_problem(const GivenContact& contact, const solver::Grid& grid,
-                                         solver::TangentialProblem problem);
+                                         solver::TangentialProblem problem, double tolerance = 1e-8);
 
 /// Leaves the force out, and the translations with it, where it is nothing but the rounding of these
 /// tractions on a contact that half a turn brings onto itself.

@@ -4,6 +4,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/fitted_motion.hpp"
+#include "solver/grid/reduction.hpp"
 
 namespace slipstick::convergence {
 
@@ -64,7 +65,11 @@ RigidMotions rigid_motions(const GivenContact& contact, const KnownMotion& motio
   return motions;
 }
 
-State find_state(const GivenContact& c, const KnownMotion& motion) {
+State find_state(const GivenContact& c, KnownMotion motion) {
+  // The gap is convex in the motion: of what half a turn about the origin leaves, the least has no translation.
+  if (c.centre == std::array{0.0, 0.0} && is_half_turn_symmetric(c.grid, c.friction_bound) &&
+      solver::turns_into_itself(c.traction) && solver::turns_into_itself(c.displacement))
+    motion.translates = false;
   // Within the bound no gap is negative: the bound is raised to |q| where |q| exceeds it.
   const ArrayXd bound = c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
   const RigidMotions motions = rigid_motions(c, motion);

@@ -60,7 +60,7 @@ struct State {
   Eigen::ArrayXd slip;                 ///< 2*cells
   Eigen::ArrayXd gap;                  ///< cells
 };
-State find_state(const GivenContact& contact, const KnownMotion& motion);
+State find_state(const GivenContact& contact, KnownMotion motion);
 
 /// The rigid motions of a contact as displacement fields of 2*cells.
 struct RigidMotions {

@@ -38,18 +38,19 @@ class InputFile {
     if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
   }
 
-  /// Reads to the end: a file may grow meanwhile, and files of the system have no size.
-  std::string read() const {
+  /// Reads to the end, or until there are `most` bytes: a file may grow meanwhile, and files of the system have no
+  /// size.
+  std::string read(std::uintmax_t most) const {
     struct stat status {};
     std::string text;
-    if (fstat(descriptor_, &status) == 0) text.reserve(static_cast<std::size_t>(status.st_size));
+    if (fstat(descriptor_, &status) == 0) text.reserve(std::min<std::uintmax_t>(status.st_size, most));
     std::array<char, 1 << 16> buffer;
     for (;;) {
       const ssize_t size = ::read(descriptor_, buffer.data(), buffer.size());
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) fail(std::generic_category().message(errno));
-      if (size == 0) return text;
       text.append(buffer.data(), static_cast<std::size_t>(size));
+      if (size == 0 || text.size() >= most) return text;
       if (text.size() > largest_) fail_for_size();
     }
   }
@@ -106,10 +107,11 @@ void require_input_file(const std::filesystem::path& file, std::uintmax_t larges
   InputFile(file, largest, allowed).require_regular();
 }
 
-std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed) {
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed,
+                            std::uintmax_t most) {
   const InputFile input(file, largest, allowed);
   input.require_regular();
-  return input.read();
+  return input.read(most);
 }
 
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {

@@ -21,8 +21,9 @@ inline constexpr std::uintmax_t kLargestHdf5 = std::uintmax_t{16} << 30;
 /// that is missing or may not be read, and one of more than `largest` bytes.
 void require_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed);
 
-/// The bytes of such a file. Throws as above.
-std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed);
+/// The bytes of such a file, or about the first `most`. Throws as above.
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed,
+                            std::uintmax_t most = UINTMAX_MAX);
 
 /// Whether a file lies in a folder or below, or would; links are followed.
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder);

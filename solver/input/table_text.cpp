@@ -24,6 +24,8 @@ using std::filesystem::path;
 
 /// Values on a line, at most: a grid has no more cells along a side.
 constexpr std::size_t kMaxColumns = 65536;
+/// Bytes that comments and the line of names take, at most, where only the names are read.
+constexpr std::uintmax_t kLongestHeader = 1 << 20;
 /// Some programs begin a text with it.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlanks = " \t\r";
@@ -33,10 +35,10 @@ constexpr std::string_view kSeparatorsInWords =
     "commas, semicolons, tabs or blanks between columns; no commas between them where they are decimal marks";
 
 std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kAround = " \t\r\"";
-  const auto first = text.find_first_not_of(kAround);
-  return first == std::string_view::npos ? text.substr(text.size())
-                                         : text.substr(first, text.find_last_not_of(kAround) - first + 1);
+  const auto is_around = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
+  while (!text.empty() && is_around(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_around(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::string lower_case(std::string_view text) {
@@ -60,10 +62,11 @@ Heading heading_of(std::string_view text) {
 /// The text of a table, line by line. Lines without anything are skipped.
 class TextTable {
  public:
-  explicit TextTable(const path& file)
+  explicit TextTable(const path& file, std::uintmax_t most = UINTMAX_MAX)
       : file_(file),
         text_(read_input_file(file, kLargestTextTable,
-                              "a table as text (CSV), VTK image data named .vti, or an HDF5 file named .h5 or .hdf5")) {
+                              "a table as text (CSV), VTK image data named .vti, or an HDF5 file named .h5 or .hdf5",
+                              most)) {
     if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
   }
 
@@ -257,7 +260,7 @@ std::size_t find_column(const path& file, const std::string& name, const std::ve
 }  // namespace
 
 std::vector<std::string> text_table_names(const path& file) {
-  TextTable table(file);
+  TextTable table(file, kLongestHeader);
   std::vector<std::string> names;
   for (const Heading& heading : table.header({})) names.push_back(lower_case(heading.name));
   return names;
