@@ -58,9 +58,7 @@ int judge_file(const CLI::App& command, const CheckRequest& request, std::ostrea
                                "is a loop; --twist, --discrete and --pressure-given are for a field of "
                                "tractions; allowed: without them");
     }
-    LoopOptions options{.strict = request.check.strict};
-    if (request.check.tolerance) options.tolerance = *request.check.tolerance;
-    return run_judge("loops", loop_request(scene, request.field, options), text, result);
+    return run_judge("loops", loop_request(scene, request.field, request.check), text, result);
   }
   if (is_stress_file(request.field, request.check.columns)) {
     MeshOptions others = request.mesh;
@@ -79,11 +77,8 @@ int judge_file(const CLI::App& command, const CheckRequest& request, std::ostrea
                                "is a field on a mesh; --discrete, --pressure-given and --columns are for a "
                                "field on a regular grid; allowed: without them");
     }
-    MeshOptions mesh = request.mesh;
-    mesh.twist = request.check.twist;
-    mesh.tolerance = request.check.tolerance;
-    mesh.strict = request.check.strict;
-    return run_judge("meshes", mesh_request(scene, request.overrides, request.field, mesh), text, result);
+    return run_judge("meshes", mesh_request(scene, request.overrides, request.field, request.check, request.mesh), text,
+                     result);
   }
   const FieldCheck check = check_field(scene, request.field, request.check);
   result = to_json(check);
@@ -131,7 +126,7 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI::App& app) {
+RunCommand add_check_command(CLI::App& app) {
   const auto request = std::make_shared<CheckRequest>();
   CLI::App* const command =
       app.add_subcommand("check", "Judge a traction field, stresses or a loop that any program computed");

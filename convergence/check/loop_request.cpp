@@ -67,12 +67,10 @@ std::vector<double> csv_column(const std::filesystem::path& file, const std::str
 }
 
 std::vector<double> json_list(const std::filesystem::path& file, const Json& json, const std::string& name) {
-  std::vector<double> values;
   const Json& list = json[name];
   const bool are_numbers = list.is_array() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
   if (!are_numbers) throw InputError(file.string(), name, "...", "a list of numbers");
-  for (const Json& value : list) values.push_back(value.get<double>());
-  return values;
+  return list.get<std::vector<double>>();
 }
 
 template <class Column>
@@ -241,7 +239,7 @@ bool is_loop_file(const std::filesystem::path& file) {
   return !is_field && (of_torsion || is_of_force(names));
 }
 
-Json loop_request(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
+Json loop_request(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
   law_contact(scene);  // or why there is none, before the loop is read
   const LoopRecord record = read_loop(file);
   Json groups = Json::array();
@@ -252,7 +250,7 @@ Json loop_request(const solver::Scene& scene, const std::filesystem::path& file,
   return {{"name", scene.name},
           {"loop", file.string()},
           {"of_force", record.of_force},
-          {"tolerance", options.tolerance},
+          {"tolerance", options.tolerance.value_or(0.01)},
           {"strict", options.strict},
           {"time", record.time},
           {"load", record.load},

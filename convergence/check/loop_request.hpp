@@ -2,16 +2,11 @@
 
 #include <filesystem>
 
+#include "convergence/check/examination.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
-
-/// Options of the check of a loop. A good loop follows the exact law.
-struct LoopOptions {
-  double tolerance = 0.01;  ///< root mean square of the load's error, over the largest load
-  bool strict = false;      ///< a good loop is in the scene's units and signs, too
-};
 
 /// Whether a file holds a loop, not a field: JSON, or a CSV table without a column x1 but with columns of
 /// moments and rotations, or of forces and displacements.
@@ -22,7 +17,9 @@ bool is_loop_file(const std::filesystem::path& file);
 /// same names: moment (torque) and rotation (twist, angle, twist_angle), or force (tangential_force) and displacement;
 /// optional are time and normal_load, otherwise the scene's. Throws InputError for a file that cannot be read, a
 /// missing column, lists of different lengths, a value that is no finite number, times that do not increase, fewer than
-/// 20 rows under a normal load, a loop without motion or load, and a scene whose torsion has no exact law.
-Json loop_request(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options);
+/// 20 rows under a normal load, a loop without motion or load, and a scene whose torsion has no exact law. Of the
+/// options strict and tolerance hold; the latter, 0.01 if it is not given, is of the root mean square of the load's
+/// error over the largest load.
+Json loop_request(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options);
 
 }  // namespace slipstick::convergence

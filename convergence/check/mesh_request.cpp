@@ -117,7 +117,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
 }
 
 Json mesh_request(const solver::Scene& scene, const std::vector<std::string>& overrides,
-                  const std::filesystem::path& file, const MeshOptions& options) {
+                  const std::filesystem::path& file, const CheckOptions& options, const MeshOptions& mesh) {
   const solver::FrictionLaw& law = scene.contact.friction;
   if (law.is_frictionless() || !law.map.empty()) {
     throw solver::InputError(scene.source.string(), "contact.friction", law.map.empty() ? "0" : law.map.string(),
@@ -141,10 +141,10 @@ Json mesh_request(const solver::Scene& scene, const std::vector<std::string>& ov
           {"twist", or_null(options.twist)},
           {"tolerance", or_null(options.tolerance)},
           {"strict", options.strict},
-          {"stick_slope", or_null(options.stick_slope)},
-          {"normal_stiffness", or_null(options.normal_stiffness)},
-          {"held_at", options.held_at},
-          {"read_as", options.read_as}};
+          {"stick_slope", or_null(mesh.stick_slope)},
+          {"normal_stiffness", or_null(mesh.normal_stiffness)},
+          {"held_at", mesh.held_at},
+          {"read_as", mesh.read_as}};
 }
 
 }  // namespace slipstick::convergence
