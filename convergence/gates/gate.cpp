@@ -80,11 +80,6 @@ std::string too_tight(const Judgement& judgement, const Json& result) {
 
 std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
 
-std::string word(const Json& result, const char* key) {
-  const auto found = result.is_object() ? result.find(key) : result.end();
-  return found != result.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 /// The noun for the work that made a result.
 std::string maker(const GateSource& source) {
   if (std::holds_alternative<SceneSource>(source)) return "solve";
@@ -101,9 +96,10 @@ bool is_unknown(const FoundQuantity& found) { return found.value == nullptr && f
 /// Why there is no number: the reason that the result gives, or the nearest name that it has.
 std::string missing_text(const Gate& gate, const Json& result, const FoundQuantity& found) {
   if (!is_unknown(found)) return fmt::format("{} is not a number{}", gate.quantity, because(found.reason));
-  if (const std::string status = word(result, "status"); status == "failed" || status == "refused") {
+  if (is_failed(result)) {
     return fmt::format("there is no {}: the {} {}{}", gate.quantity, maker(gate.source),
-                       status == "failed" ? "failed" : "was refused", because(word(result, "message")));
+                       text_at(result, "status") == "failed" ? "failed" : "was refused",
+                       because(text_at(result, "message")));
   }
   return fmt::format("the result has no {}; the nearest is {}", gate.quantity,
                      solver::nearest_word(gate.quantity, quantity_paths(result)));
@@ -119,16 +115,16 @@ std::string out_of_bounds_text(const Judgement& judgement) {
 
 /// Why the solve, or runs of the study, have no result; empty where all have one.
 std::string died(const Gate& gate, const Json& result) {
-  if (!std::holds_alternative<ResultSource>(gate.source) && word(result, "status") == "failed") {
-    return fmt::format("the {} failed{}", maker(gate.source), because(word(result, "message")));
+  if (!std::holds_alternative<ResultSource>(gate.source) && text_at(result, "status") == "failed") {
+    return fmt::format("the {} failed{}", maker(gate.source), because(text_at(result, "message")));
   }
   return result.is_object() ? failed_runs_text(result) : "";
 }
 
 /// The message of a solve that did not reach its tolerance; empty where it did.
 std::string unfinished(const Gate& gate, const Json& result) {
-  if (gate.quantity == "status" || word(result, "status") != "not_converged") return "";
-  return "the solve did not reach its tolerance" + because(word(result, "message"));
+  if (gate.quantity == "status" || text_at(result, "status") != "not_converged") return "";
+  return "the solve did not reach its tolerance" + because(text_at(result, "message"));
 }
 
 Outcome outcome_of(GateStatus status, bool held) {

@@ -84,19 +84,14 @@ void judge_variant(HardRow& row, Variant variant, Number& difference, const Solv
 }
 
 void judge_variants(std::vector<HardRow>& rows, const ProcessPool& pool) {
-  struct Solve {
-    HardRow* row;
-    std::size_t place;  ///< in row->variants
-    Variant variant;
-  };
-  std::vector<Solve> solves;
+  std::vector<std::pair<HardRow*, std::size_t>> solves;  // the row, and the place in its variants
   std::vector<RunSpec> runs;
   for (HardRow& row : rows) {
     if (!is_certified(row)) continue;
     for (const Variant variant : kVariants) {
       const std::string reason = why_not(*row.scene, variant);
       if (reason.empty()) {
-        solves.push_back({&row, row.variants.size(), variant});
+        solves.emplace_back(&row, row.variants.size());
         runs.push_back(transformed_run(row, variant));
       }
       row.variants.push_back({to_string(variant), {.why_missing = reason}});
@@ -104,8 +99,8 @@ void judge_variants(std::vector<HardRow>& rows, const ProcessPool& pool) {
   }
   const std::vector<SolveRecord> records = pool.run_or_refuse(runs);
   for (std::size_t i = 0; i < solves.size(); ++i) {
-    HardRow& row = *solves[i].row;
-    judge_variant(row, solves[i].variant, row.variants[solves[i].place].second, records[i]);
+    const auto& [row, place] = solves[i];
+    judge_variant(*row, runs[i].variant, row->variants[place].second, records[i]);
   }
 }
 

@@ -64,8 +64,6 @@ std::vector<Contender> contenders(const PageScene& at) {
   return all;
 }
 
-std::string word(const Json& result, const char* key) { return result.value(key, ""); }
-
 /// The error of an answer of another program, by the first number that it has.
 void compare(PageProgram& row, const Json& result, const std::vector<std::string>& numbers,
              const std::vector<PageNumber>& known) {
@@ -99,9 +97,9 @@ Cost error_against_time(const PageScene& at, const Reference& reference, const P
   const std::vector<Json> results = to_json(pool.run_or_refuse(runs));
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& result = results[i];
-    const std::string why = is_failed(result) ? word(result, "message") : "not a number";
+    const std::string why = is_failed(result) ? text_at(result, "message") : "not a number";
     const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
-    cost.points[i].status = word(result, "status");
+    cost.points[i].status = text_at(result, "status");
     cost.points[i].seconds = number_or(seconds_of(result), why);
     cost.points[i].error = number_or(std::abs(found / reference.value - 1.0) + reference.uncertainty,
                                      is_converged(result) ? "no reference is known" : why);
@@ -127,12 +125,12 @@ std::vector<PageProgram> answers_of_programs(const PageScene& at, const Contest&
     PageProgram& row = rows[i];
     const auto program = result.find("program");
     const bool foreign = program != result.end();
-    row.status = word(result, "status");
-    row.message = word(result, "message");
-    row.version = foreign ? word(*program, "version") : "";
+    row.status = text_at(result, "status");
+    row.message = text_at(result, "message");
+    row.version = foreign ? text_at(*program, "version") : "";
     row.seconds = number_or(seconds_of(result), "there is no answer");
     row.cpu_seconds = number_or(foreign ? number_at(result, "program.cpu_seconds") : kNaN, "it was not counted");
-    const bool only_pressure = foreign && word(*program, "fields") == "pressure";
+    const bool only_pressure = foreign && text_at(*program, "fields") == "pressure";
     compare(
         row, result,
         only_pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{contest.reference.number},
@@ -227,7 +225,7 @@ std::string costs_text(const SceneCosts& costs) {
   const double crossover = number_at(*operators, "cells");
   text += std::isfinite(crossover)
               ? fmt::format("  convolution is faster than direct summation from {:.3g} cells a side on\n", crossover)
-              : fmt::format("  convolution against direct summation: {}\n", word(*operators, "remark"));
+              : fmt::format("  convolution against direct summation: {}\n", text_at(*operators, "remark"));
   return text;
 }
 

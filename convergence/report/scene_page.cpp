@@ -110,8 +110,7 @@ Json earlier_headline(const fs::path& file) {
 /// Hard variants of the scene, by this program or by another one.
 HardResult hard_variants(const PageScene& at, const Json& answer, const std::vector<BesideMethod>& programs,
                          const ProcessPool& pool) {
-  HardOptions options{.variants = at.own, .finer_meshes = at.own && at.size.finer_meshes};
-  options.methods = programs;
+  HardOptions options{.variants = at.own, .finer_meshes = at.own && at.size.finer_meshes, .methods = programs};
   if (!at.own) {
     const std::string name = answer.at("program").value("name", "");
     options.methods = {{name, program_override(at.scene.solver.program), true}};

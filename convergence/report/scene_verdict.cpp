@@ -71,8 +71,6 @@ void compare(const Json& now, const Json& before, const std::string& where, std:
   }
 }
 
-std::string text_of(const Json& object, const char* key) { return object.value(key, ""); }
-
 /// "; family case: reason" of a hard case.
 std::string case_text(const HardCase& made, const std::string& reason) {
   return fmt::format("; {} {}: {}", made.family, made.name, reason);
@@ -84,10 +82,10 @@ Finding judge_certificate(const Json& answer) {
   const bool history = answer.contains("history");
   const double gap = number_at(answer, history ? "history.worst_gap" : "certificate.gap");
   const double allowed = std::max(number_at(answer, "tolerance"), number_at(answer, "certificate.rounding"));
-  const bool paper = text_of(answer, "method") == "paper";
+  const bool paper = text_at(answer, "method") == "paper";
   const bool certified = is_converged(answer) && (paper ? std::isfinite(gap) : gap <= allowed);
   return {"Certificate",
-          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed", text_of(answer, "status"),
+          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed", text_at(answer, "status"),
                       number_at(answer, "cells[0]"), number_at(answer, "cells[1]"), gap, allowed),
           shown(certified)};
 }
@@ -131,10 +129,10 @@ Finding judge_hard(const HardResult& hard, const std::string& what) {
 }
 
 Finding judge_check(const Json& answer, const Json& check) {
-  const std::string verdict = text_of(check, "verdict");
-  const std::string why = fmt::format("{}: {}", verdict, text_of(check, "why"));
+  const std::string verdict = text_at(check, "verdict");
+  const std::string why = fmt::format("{}: {}", verdict, text_at(check, "why"));
   if (is_converged(answer)) return {"Field", why, shown(verdict == "good")};
-  return {"Field", fmt::format("not converged: {}; it is {}", text_of(answer, "message"), why), Shown::fails};
+  return {"Field", fmt::format("not converged: {}; it is {}", text_at(answer, "message"), why), Shown::fails};
 }
 
 Finding judge_pressure(const Json& answer) {
@@ -196,14 +194,14 @@ Finding judge_wanted(const WantedError& wanted, const std::vector<PageNumber>& n
 
 Headline headline_of(std::vector<Finding> findings, Json counts, const Page& page) {
   Headline headline{
-      .findings = std::move(findings), .commit = text_of(page.provenance, "commit"), .counts = std::move(counts)};
+      .findings = std::move(findings), .commit = text_at(page.provenance, "commit"), .counts = std::move(counts)};
   for (const PageNumber& row : page.numbers) headline.numbers.emplace_back(row.key, row.value);
   return headline;
 }
 
 std::vector<std::string> changes(const Headline& now, const Json& before) {
   std::vector<std::string> found;
-  const std::string verdict = text_of(before, "verdict");
+  const std::string verdict = text_at(before, "verdict");
   if (now.verdict() != verdict) found.push_back(fmt::format("the verdict was {}", verdict));
   const Json json = to_json(now);
   for (const char* part : {"counts", "numbers"}) compare(json.at(part), before.at(part), "", found);
@@ -213,7 +211,7 @@ std::vector<std::string> changes(const Headline& now, const Json& before) {
 Headline with_changes(Headline now, const Json& before) {
   if (before.is_null()) return now;
   now.changes = changes(now, before);
-  now.since = text_of(before, "commit");
+  now.since = text_at(before, "commit");
   if (now.changes.empty() && now.commit == now.since) {
     const Json since = before.value("since", Json{});
     now.since = since.is_null() ? "" : since.get<std::string>();

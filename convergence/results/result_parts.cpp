@@ -116,6 +116,25 @@ double size_at(const Json& result, const std::string& path) {
   return value.is_number() ? std::abs(value.get<double>()) : std::nan("");
 }
 
+std::string text_at(const Json& result, const char* key) {
+  const auto found = result.is_object() ? result.find(key) : result.end();
+  return found != result.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+bool is_failed(const Json& result) {
+  const std::string status = text_at(result, "status");
+  return status == "failed" || status == "refused";
+}
+
+bool is_converged(const Json& result) { return text_at(result, "status") == "converged"; }
+
+std::string why_missing(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  if (found.value != nullptr && found.value->is_number()) return "";
+  if (!found.reason.empty()) return found.reason;
+  return result.value("message", "the result does not have it");
+}
+
 double seconds_of(const Json& result) {
   return number_at(result, result.contains("history") ? "history.seconds" : "seconds.total");
 }

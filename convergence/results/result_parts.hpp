@@ -51,6 +51,16 @@ double number_at(const Json& result, const std::string& path);
 /// The size of a number of a result, or the length of a pair; NaN where there is none.
 double size_at(const Json& result, const std::string& path);
 
+/// The text of a key; empty where there is none.
+std::string text_at(const Json& result, const char* key);
+
+/// Whether a result says that its solve failed or was refused, or that it converged.
+bool is_failed(const Json& result);
+bool is_converged(const Json& result);
+
+/// Why a result has no number at a path: its reason, or its message; empty where it has one.
+std::string why_missing(const Json& result, const std::string& path);
+
 /// Seconds of a whole solve, of a history all its steps; NaN where there are none.
 double seconds_of(const Json& result);
 

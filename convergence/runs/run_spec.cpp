@@ -118,20 +118,24 @@ void exchange(Scene& scene) {
   }
 }
 
-void use_two_threads(Scene& scene) { scene.solver.threads = 2; }
-
 struct Transformation {
   Variant variant;
-  const char* word;
+  std::string_view word;
   void (*apply)(Scene&);
 };
-constexpr std::array kTransformations{Transformation{Variant::mirrored, "mirrored", mirror},
-                                      Transformation{Variant::turned, "turned", turn},
-                                      Transformation{Variant::shifted, "shifted", shift},
-                                      Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
-                                      Transformation{Variant::exchanged, "exchanged", exchange},
-                                      Transformation{Variant::two_threads, "two_threads", use_two_threads}};
-static_assert(kTransformations.size() == kVariants.size());
+constexpr std::array kTransformations{
+    Transformation{Variant::none, "none", [](Scene&) {}},
+    Transformation{Variant::mirrored, "mirrored", mirror},
+    Transformation{Variant::turned, "turned", turn},
+    Transformation{Variant::shifted, "shifted", shift},
+    Transformation{Variant::in_other_units, "in_other_units", measure_in_millimetres},
+    Transformation{Variant::exchanged, "exchanged", exchange},
+    Transformation{Variant::two_threads, "two_threads", [](Scene& scene) { scene.solver.threads = 2; }}};
+static_assert(kTransformations.size() == kVariants.size() + 1);
+
+const Transformation& transformation(Variant variant) {
+  return *std::ranges::find(kTransformations, variant, &Transformation::variant);
+}
 
 /// Bytes of a file that stands in a key as it is; of a larger one, a height map or a program, its checksum does.
 constexpr std::size_t kWholeFile = 65536;
@@ -153,19 +157,12 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
 
 }  // namespace
 
-std::string to_string(Variant variant) {
-  for (const Transformation& each : kTransformations) {
-    if (each.variant == variant) return each.word;
-  }
-  return "none";
-}
+std::string to_string(Variant variant) { return std::string(transformation(variant).word); }
 
 Variant variant_of(const std::string& word) {
-  for (const Transformation& each : kTransformations) {
-    if (each.word == word) return each.variant;
-  }
-  if (word == to_string(Variant::none)) return Variant::none;
-  throw std::invalid_argument(word + " is no variant");
+  const auto found = std::ranges::find(kTransformations, word, &Transformation::word);
+  if (found == kTransformations.end()) throw std::invalid_argument(word + " is no variant");
+  return found->variant;
 }
 
 std::string why_not(const Scene& scene, Variant variant) {
@@ -188,9 +185,7 @@ std::string why_not(const Scene& scene, Variant variant) {
 }
 
 Scene transformed(Scene scene, Variant variant) {
-  for (const Transformation& each : kTransformations) {
-    if (each.variant == variant) each.apply(scene);
-  }
+  transformation(variant).apply(scene);
   return scene;
 }
 
@@ -284,20 +279,6 @@ SolveRecord not_computed(RunStatus status, const std::string& message, const Run
   return record;
 }
 
-bool is_failed(const Json& result) {
-  const std::string status = result.value("status", "");
-  return status == "failed" || status == "refused";
-}
-
-bool is_converged(const Json& result) { return result.value("status", "") == "converged"; }
-
-std::string why_missing(const Json& result, const std::string& path) {
-  const FoundQuantity found = find_quantity(result, path);
-  if (found.value != nullptr && found.value->is_number()) return "";
-  if (!found.reason.empty()) return found.reason;
-  return result.value("message", "the result does not have it");
-}
-
 void FailedRuns::add(const std::string& name, const Json& result) {
   runs_[name] |= is_failed(result);
   if (!is_failed(result) || first_) return;
@@ -308,7 +289,7 @@ void FailedRuns::add(const std::string& name, const Json& result) {
 Json FailedRuns::json() const {
   Json json{{"count", count()}, {"of", runs_.size()}};
   if (first_) {
-    json["first"] = {{"run", first_->run}, {"message", first_->message}};
+    json["first"] = {{"run", first_->first}, {"message", first_->second}};
   } else {
     set_missing(json, "first", "no run failed");
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "convergence/results/solve_record.hpp"
@@ -119,21 +120,11 @@ class FailedRuns {
   std::size_t count() const;
 
  private:
-  struct First {
-    std::string run;
-    std::string message;
-  };
-
-  std::map<std::string, bool> runs_;  ///< whether it failed, once or more
-  std::optional<First> first_;
+  std::map<std::string, bool> runs_;                          ///< whether it failed, once or more
+  std::optional<std::pair<std::string, std::string>> first_;  ///< the first that failed, and its message
 };
 
 /// The same of a result's key failed_runs.
 std::string failed_runs_text(const Json& result);
-
-// The same for results as JSON; to be removed once all callers take records.
-bool is_failed(const Json& result);
-bool is_converged(const Json& result);
-std::string why_missing(const Json& result, const std::string& path);
 
 }  // namespace slipstick::convergence

@@ -62,8 +62,6 @@ void require_contact_seen(const Scene& scene, double pressed, double cells_acros
 
 Index longer_side(const Scene& scene) { return std::max(scene.grid.cells[0], scene.grid.cells[1]); }
 
-std::string shortest(double value) { return fmt::format("{:g}", value); }
-
 bool fits_in_memory(const Scene& scene) {
   try {
     solver::make_model(scene);
@@ -140,7 +138,7 @@ AccuracyQuantity accuracy_quantity(const Scene& scene, AccuracyOf of) {
 }
 
 void require_reachable(const Scene& scene, const AccuracyTarget& target) {
-  const std::string option = fmt::format("--accuracy {}", shortest(target.error));
+  const std::string option = fmt::format("--accuracy {:g}", target.error);
   if (!(target.error > 0.0 && target.error < 1.0)) throw InputError(option, "allowed: above 0 and below 1");
   if (target.of == AccuracyOf::twist && !brings_torsion(scene.steps.back().torsion)) {
     throw InputError(option, fmt::format("{} brings no torsion in its last step, so that the twist has no relative "
@@ -206,7 +204,7 @@ double cells_across(const ContactOnGrid& contact, Index cells) {
 }
 
 InputError out_of_reach(const Scene& scene, const AccuracyTarget& target, double least) {
-  return {fmt::format("--accuracy {}", shortest(target.error)),
+  return {fmt::format("--accuracy {:g}", target.error),
           fmt::format("allowed on a grid: {:.2g} or more for the {}, which {} cells across the contact "
                       "are expected to reach; where a scene has an exact answer: any, with --model exact",
                       least, accuracy_quantity(scene, target.of).name, kMaxCellsAcross)};
