@@ -40,7 +40,7 @@ class CacheKey {
 /// longest. It serves one solve at a time.
 class SolveCache {
  public:
-  /// Bytes. Below this size the memory check is skipped.
+  /// Bytes that a cache holds at most, where its owner names no other number.
   static constexpr double kDefaultBytes = 32.0 * 0x1p20;
 
   explicit SolveCache(double max_bytes = kDefaultBytes);
