@@ -17,6 +17,7 @@ struct Grid {
   bool quadrant = false;
   Ranks ranks = {};  ///< that share its rows
 
+  bool operator==(const Grid&) const = default;
   Index cells() const { return n1 * n2; }
   double cell_area() const { return h1 * h2; }
   /// Cell centres. Mirror images about the origin are exact negatives of each other.

@@ -40,6 +40,7 @@ class Ranks {
     return ranks;
   }
 
+  bool operator==(const Ranks&) const = default;
   bool several() const { return communicator_ != nullptr || planned_ > 1; }
   int number() const;
   /// The number of this process, from 0.

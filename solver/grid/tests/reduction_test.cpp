@@ -23,14 +23,6 @@ Index cell(const Grid& grid, Index i, Index j) { return i * grid.n2 + j; }
 
 Reduction of(const Grid& grid, const ArrayXd& field) { return {grid, field, field}; }
 
-void expect_grid(const Grid& grid, const Grid& expected) {
-  EXPECT_EQ(grid.n1, expected.n1);
-  EXPECT_EQ(grid.n2, expected.n2);
-  EXPECT_EQ(grid.h1, expected.h1);
-  EXPECT_EQ(grid.h2, expected.h2);
-  EXPECT_EQ(grid.quadrant, expected.quadrant);
-}
-
 constexpr Grid kSquare{16, 16, 0.5, 0.5};
 constexpr Grid kOblong{16, 12, 0.5, 0.7};
 
@@ -105,7 +97,7 @@ TEST(Reduction, ComparesZerosAndInfinities) {
   ArrayXd gap = (reachable > 0.0).select(ArrayXd::Zero(256), ArrayXd::Constant(256, kInfinity));
   const Reduction part(kSquare, gap, reachable);
   EXPECT_TRUE(part.diagonal());
-  expect_grid(part.grid(), {6, 6, 0.5, 0.5, true});
+  EXPECT_EQ(part.grid(), (Grid{6, 6, 0.5, 0.5, true}));
   gap[cell(kSquare, 8, 3)] = kInfinity;
   EXPECT_FALSE(Reduction(kSquare, gap, reachable).quadrant());
   gap[cell(kSquare, 8, 3)] = 1e-300;
@@ -129,7 +121,7 @@ TEST(Trimming, KeepsTheOriginInTheMiddle) {
   ArrayXd contact = ArrayXd::Zero(kOblong.cells());
   contact[cell(kOblong, 3, 10)] = 1.0;
   const Reduction part(kOblong, contact);
-  expect_grid(part.grid(), {10, 10, 0.5, 0.7, false});
+  EXPECT_EQ(part.grid(), (Grid{10, 10, 0.5, 0.7, false}));
   EXPECT_EQ(part.restricted(contact).sum(), 1.0);
   EXPECT_EQ(part.restricted(contact)[cell(part.grid(), 0, 9)], 1.0);
   EXPECT_EQ((part.restricted(cell_x1(kOblong)) - cell_x1(part.grid())).abs().maxCoeff(), 0.0);
@@ -143,7 +135,7 @@ TEST(Trimming, LeavesAGridWithContactInACornerAlone) {
     contact[corner] = 1.0;
     const Reduction part(kOblong, contact);
     EXPECT_FALSE(part.trimmed());
-    expect_grid(part.grid(), kOblong);
+    EXPECT_EQ(part.grid(), kOblong);
     EXPECT_EQ(part.restricted(contact).sum(), 1.0);
   }
   EXPECT_FALSE(Reduction(kOblong).trimmed());
@@ -152,9 +144,9 @@ TEST(Trimming, LeavesAGridWithContactInACornerAlone) {
 
 /// An empty contact still leaves a grid of some cells.
 TEST(Trimming, OfAnEmptyFieldLeavesTheMiddle) {
-  expect_grid(Reduction(kOblong, ArrayXd::Zero(kOblong.cells())).grid(), {2, 2, 0.5, 0.7, false});
+  EXPECT_EQ(Reduction(kOblong, ArrayXd::Zero(kOblong.cells())).grid(), (Grid{2, 2, 0.5, 0.7, false}));
   const Grid odd{7, 1, 1.0, 1.0};
-  expect_grid(Reduction(odd, ArrayXd::Zero(7)).grid(), {1, 1, 1.0, 1.0, false});
+  EXPECT_EQ(Reduction(odd, ArrayXd::Zero(7)).grid(), (Grid{1, 1, 1.0, 1.0, false}));
 }
 
 // --- there and back ---
@@ -183,7 +175,7 @@ constexpr Grid kQuadrant{3, 2, 0.5, 0.7, true};
 
 TEST(Mirror, WholeGridHoldsTheQuadrantsCells) {
   const Grid whole = whole_grid(kQuadrant);
-  expect_grid(quadrant_of(whole), kQuadrant);
+  EXPECT_EQ(quadrant_of(whole), kQuadrant);
   EXPECT_EQ(whole.n1, 6);
   EXPECT_EQ(whole.n2, 4);
   EXPECT_FALSE(whole.quadrant);
