@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -94,27 +95,20 @@ template <typename Off>
 std::pair<double, double> nearest_factor(const Off& off) {
   constexpr double kWidest = 8.0;
   constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSections = 14;
+  constexpr int kSections = 15;
   double low = -std::log(kWidest);
   double high = std::log(kWidest);
-  double left = high - kGolden * (high - low);
-  double right = low + kGolden * (high - low);
-  double at_left = off(std::exp(left));
-  double at_right = off(std::exp(right));
+  double best = high - kGolden * (high - low);
+  double at_best = off(std::exp(best));
   for (int i = 0; i < kSections; ++i) {
-    if (at_left < at_right) {
-      high = std::exchange(right, left);
-      at_right = at_left;
-      left = high - kGolden * (high - low);
-      at_left = off(std::exp(left));
-    } else {
-      low = std::exchange(left, right);
-      at_left = at_right;
-      right = low + kGolden * (high - low);
-      at_right = off(std::exp(right));
-    }
+    const double next = low + high - best;  // its image in the interval, of which the part beyond the worse one goes
+    const double at_next = off(std::exp(next));
+    const bool nearer = next < best ? at_next < at_best : at_next <= at_best;
+    const double worse = nearer ? best : next;
+    (worse < low + high - worse ? low : high) = worse;
+    if (nearer) std::tie(best, at_best) = std::pair(next, at_next);
   }
-  return at_left < at_right ? std::pair{std::exp(left), at_left} : std::pair{std::exp(right), at_right};
+  return {std::exp(best), at_best};
 }
 
 std::optional<Cause> fitted_mistake(const Examination& e, double allowed) {

@@ -277,8 +277,8 @@ solver::SlipDirection noticeable_direction(const GivenContact& c, const State& s
 
 Deviation larger(const Deviation& a, const Deviation& b) {
   const auto of = [&](double Deviation::*part) { return std::max(std::abs(a.*part), std::abs(b.*part)); };
-  return {of(&Deviation::tractions), of(&Deviation::inside), of(&Deviation::motion), of(&Deviation::moment),
-          of(&Deviation::friction),  of(&Deviation::excess), of(&Deviation::gap),    of(&Deviation::pressure)};
+  return {of(&Deviation::tractions), of(&Deviation::inside), of(&Deviation::motion),  of(&Deviation::moment),
+          of(&Deviation::friction),  of(&Deviation::gap),    of(&Deviation::pressure)};
 }
 
 }  // namespace slipstick::convergence

@@ -93,8 +93,7 @@ struct Deviation {
   double moment = 0.0;     ///< relative to the right one, signed; 0 where the right one is 0
   /// Median of |q|/(mu p) - 1 over the cells that slip in the right answer; 0 where hardly any cell slips.
   double friction = 0.0;
-  double excess = 0.0;  ///< the same, where it is above 0: cut cells carry less than their bound, none more
-  double gap = 0.0;     ///< of Coulomb's law, over energy
+  double gap = 0.0;  ///< of Coulomb's law, over energy
   /// sum |p - r| / sum r, with p under the right normal load; find_deviation() leaves it zero.
   double pressure = 0.0;
 };

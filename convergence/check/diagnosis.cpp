@@ -139,8 +139,7 @@ class Trial {
   /// The kernels K13 and K23 times the factor that fits best.
   std::optional<Assumption> best_coupling() const {
     const double times = best_multiple(by_pressure_);
-    constexpr double kNear = 0.05;
-    if (!(distance_from_named(times) > kNear)) return std::nullopt;
+    if (!is_unnamed(times, 0.05)) return std::nullopt;
     return Assumption{.cause = {fmt::format("the kernels K13 and K23 are multiplied by {:.3g}", times)},
                       .by_pressure = times};
   }
@@ -148,8 +147,7 @@ class Trial {
   /// The kernel K12 times the factor that fits best.
   std::optional<Assumption> best_cross() const {
     const double times = best_multiple(pair_.poisson_compliance * u_.cross);
-    constexpr double kNear = 0.1;
-    if (!(distance_from_named(times) > kNear)) return std::nullopt;
+    if (!is_unnamed(times, 0.1)) return std::nullopt;
     return Assumption{.cause = {fmt::format("the cross kernel K12 is multiplied by {:.3g}", times)}, .cross = times};
   }
 
@@ -174,9 +172,9 @@ class Trial {
     return fitted.coefficients[fitted.coefficients.size() - 1];
   }
 
-  /// From the factors of kernels that have names: missing, right and of the wrong sign.
-  static double distance_from_named(double factor) {
-    return std::abs(factor - std::clamp(std::round(factor), -1.0, 1.0));
+  /// Whether it is further away from the factors that have names: missing, right and of the wrong sign.
+  static bool is_unnamed(double factor, double away) {
+    return std::abs(factor - std::clamp(std::round(factor), -1.0, 1.0)) > away;
   }
 
   /// The bound, raised to |q| where |q| exceeds it: otherwise the gap could be negative.

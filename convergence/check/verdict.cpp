@@ -155,8 +155,7 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   allowed.tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
   allowed.inside = kWholeMesh * y.mesh.deviation.inside + by_chance(&Deviation::inside);
   allowed.friction = kFrictionDigits + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction);
-  allowed.friction_bound =
-      std::max(kFrictionDigits, kWholeMesh * y.mesh.deviation.excess + by_chance(&Deviation::excess));
+  allowed.friction_bound = kFrictionDigits;
   allowed.direction =
       kUnseenAngle + kWholeMesh * y.mesh.direction + kDegreesInARadian * by_chance(&Deviation::tractions);
   allowed.gap = allowed.discrete_gap +
