@@ -8,7 +8,6 @@ namespace slipstick::solver {
 namespace {
 
 using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// A grid with fewer cells than this along a side no longer resembles the contact.
 constexpr Index kMinSideCells = 8;
@@ -69,11 +68,15 @@ Weights coverings(Index to, Index from, double ratio, double shift) {
   return weights;
 }
 
-Eigen::ArrayXd transform(const Weights& along1, const Weights& along2, const double* component) {
-  const Eigen::Map<const Rows> in(component, along1.cols(), along2.cols());
-  const Rows half = along1 * in;
-  const Rows out = half * along2.transpose();
-  return Eigen::Map<const Eigen::ArrayXd>(out.data(), out.size());
+/// out = along1 in along2^T, one row after the other: only a row of along1 in is kept.
+void transform(const Weights& along1, const Weights& along2, const double* in, double* out) {
+  Eigen::VectorXd row(along2.cols());
+  for (Index i = 0; i < along1.rows(); ++i) {
+    row.setZero();
+    for (Weights::InnerIterator weight(along1, i); weight; ++weight)
+      row += weight.value() * Eigen::Map<const Eigen::VectorXd>(in + weight.index() * row.size(), row.size());
+    Eigen::Map<Eigen::VectorXd>(out + i * along2.rows(), along2.rows()).noalias() = along2 * row;
+  }
 }
 
 }  // namespace
@@ -111,15 +114,17 @@ Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::Ar
   const Index components = field.size() / fine.cells();
   Eigen::ArrayXd result(components * coarse.cells());
   for (Index c = 0; c < components; ++c) {
-    result.segment(c * coarse.cells(), coarse.cells()) = transform(along1, along2, field.data() + c * fine.cells());
+    transform(along1, along2, field.data() + c * fine.cells(), result.data() + c * coarse.cells());
   }
   return result;
 }
 
 Eigen::ArrayXd means_on(const Grid& to, const Grid& from, const Eigen::ArrayXd& field,
                         const std::array<double, 2>& centre) {
-  return transform(coverings(to.n1, from.n1, to.h1 / from.h1, centre[0] / from.h1),
-                   coverings(to.n2, from.n2, to.h2 / from.h2, centre[1] / from.h2), field.data());
+  Eigen::ArrayXd result(to.cells());
+  transform(coverings(to.n1, from.n1, to.h1 / from.h1, centre[0] / from.h1),
+            coverings(to.n2, from.n2, to.h2 / from.h2, centre[1] / from.h2), field.data(), result.data());
+  return result;
 }
 
 Eigen::ArrayXd prolong_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field,
@@ -129,8 +134,7 @@ Eigen::ArrayXd prolong_to(const Grid& fine, const Grid& coarse, const Eigen::Arr
     const Weights along1 = interpolation(fine.n1, coarse.n1, fine.quadrant, parities[c].x1);
     const Weights along2 = interpolation(fine.n2, coarse.n2, fine.quadrant, parities[c].x2);
     const auto component = static_cast<Index>(c);
-    result.segment(component * fine.cells(), fine.cells()) =
-        transform(along1, along2, field.data() + component * coarse.cells());
+    transform(along1, along2, field.data() + component * coarse.cells(), result.data() + component * fine.cells());
   }
   return result;
 }
