@@ -28,6 +28,9 @@ enum class CgStatus {
 struct CgOptions {
   double reduction;  ///< of the residual, in the norm of the preconditioner
   int max_iterations;
+  /// Length of the only step, along the first direction, which spares the map that would find it; 0: the
+  /// iteration.
+  double known_step = 0.0;
 };
 
 struct CgSummary {
@@ -303,6 +306,10 @@ class ProjectedCg {
     double square = begin(summary);
     const double first_square = square;
     while (square > 0.0) {
+      if (options.known_step > 0.0) {
+        step_along_direction(options.known_step);
+        break;
+      }
       if (summary.iterations == options.max_iterations) {
         summary.status = CgStatus::iterations;
         break;
@@ -380,6 +387,13 @@ class ProjectedCg {
     });
   }
 
+  void step_along_direction(double length) {
+    cells_.each([&](Index first, Index last) {
+      for (Index start = first; start < x_.size(); start += cells_.size())
+        x_.segment(start, last - first) += length * d_.segment(start, last - first);
+    });
+  }
+
   /// A step along the direction. False, with its breakdown in the summary, where the curvature along it is
   /// not positive.
   bool advance(double square, CgSummary& summary) {
@@ -426,7 +440,8 @@ class ProjectedCg {
 /// 4. d = y + (r.y / last r.y) d; again from 2 until sqrt(r.y) has fallen by `reduction`.
 ///
 /// r: the residual of the first x; overwritten by the last residual. Each iteration applies both maps once
-/// and sweeps over the cells four times, twice within the maps. Allocates nothing.
+/// and sweeps over the cells four times, twice within the maps. Allocates nothing. With a known step: 1, and
+/// x += step d.
 template <LinearMap Map, SplitMap Preconditioner, class Condition>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
                        Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work, Eigen::ArrayXd& x) {

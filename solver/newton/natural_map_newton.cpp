@@ -101,7 +101,7 @@ class NaturalMapNewton {
                     fmt::format("no convergence within {} operator applications", options.max_applications));
       }
       linear_.linearise(state_, trial_);
-      const LinearTarget target = linear_.target(options.tolerance / summary.gap, left);
+      const LinearTarget target = linear_.target(options.tolerance / summary.gap, left, idle_steps == 0);
       const double before = state_.energy();
       if (!take_newton_step(q, target) && !take_gradient_step(q)) {
         return stop(q, options, summary, "rounding: no step lowers the energy");

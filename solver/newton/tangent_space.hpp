@@ -22,9 +22,9 @@ namespace slipstick::solver {
 ///   projector * scale * (inverse symbol) * scale * projector + shift * projector
 ///
 /// approximates its inverse. The two terms reproduce 1/(1/xi + stiffness), the symbol of the inverse where
-/// the stiffness varies slowly, at the wave numbers xi = P and P/12, with P the mean of the inverse symbol
-/// along the free direction. With only one term the error would be the ratio of the largest to the smallest
-/// wave number where the stiffness is large.
+/// the stiffness varies slowly, at the wave numbers xi = P and P/12, in many spots P/48, with P the mean of
+/// the inverse symbol along the free direction. With only one term the error would be the ratio of the largest to the
+/// smallest wave number where the stiffness is large.
 ///
 /// Stiffness and preconditioner may be inexact, the directions not: a component of the slip that no traction
 /// can change would otherwise bound the residual from below.
@@ -39,7 +39,8 @@ struct TangentSpace {
         stiffness(f2.size()),
         scale(f2.size()),
         shift(f2.size()),
-        free(cells) {
+        free(cells),
+        low_over_mean_(cells.is_ragged() ? 1.0 / 48.0 : 1.0 / 12.0) {
     for (Field* const field : {&f1, &f2}) clear(cells, *field);
     for (Eigen::ArrayXf* const field : {&stiffness, &scale, &shift}) clear(cells, *field);
   }
@@ -62,8 +63,7 @@ struct TangentSpace {
   /// A cell that moves along the unit vector (f1, f2) against the stiffness `along`; mean: of the inverse
   /// symbol along (f1, f2).
   void set_line(Index cell, double along1, double along2, double along, double mean) {
-    constexpr double kLowOverMean = 1.0 / 12.0;
-    const double low = kLowOverMean * mean;
+    const double low = low_over_mean_ * mean;
     const double alpha = 1.0 / ((1.0 + along * low) * (1.0 + along * mean));
     f1[cell] = along1;
     f2[cell] = along2;
@@ -154,6 +154,7 @@ struct TangentSpace {
 
  private:
   static constexpr float kLeastStiffness = std::numeric_limits<float>::min();
+  double low_over_mean_;
 };
 
 /// The linearised problem's matrix, K + stiffness, on the tangent space.
