@@ -88,6 +88,16 @@ class TangentialOnGrid {
     return program;
   }
 
+  /// 1 where tractions stay within their bound, once the program is solved. Slipping cells lie on their circle up to
+  /// rounding; within it a cell sticks.
+  ArrayXd stick_area(const ArrayXd& traction) const {
+    constexpr double kOnCircle = 1e-12;
+    const ArrayXd size = norms(packing_.packed(traction));
+    ArrayXd stick = packing_.unpacked((size < (1.0 - kOnCircle) * problem_.friction_bound).cast<double>());
+    share_rows(grid_, stick);
+    return stick;
+  }
+
   /// The same part of the limit loads on the coarse grid.
   TangentialOnGrid coarsened(const Grid& coarse) const {
     TangentialProblem problem{
@@ -132,13 +142,6 @@ void describe_motion(TangentialSolution& solution, const NewtonSummary& newton, 
   solution.twist = motion[2];
 }
 
-/// 1 where tractions stay within their bound. Slipping cells lie on their circle up to rounding; within it a
-/// cell sticks.
-ArrayXd stick_area(const ArrayXd& traction, const ArrayXd& bound) {
-  constexpr double kOnCircle = 1e-12;
-  return (norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
-}
-
 /// True without tangential loads, motions and earlier tractions: then zero tractions satisfy Coulomb's law.
 bool is_at_rest(const TangentialProblem& problem) {
   const auto nothing = [](const std::optional<std::array<double, 2>>& pair) {
@@ -155,8 +158,8 @@ TangentialSolution at_rest(const Grid& grid, const TangentialProblem& problem) {
   solution.displacement = problem.displacement.value_or(std::array{0.0, 0.0});
   solution.status = Status::converged;
   solution.part = 0.0;
-  solution.traction.setZero(2 * grid.cells());
-  solution.elastic_displacement = solution.slip = solution.traction;
+  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip})
+    *field = zeros(2 * grid.cells());
   solution.stick = (problem.friction_bound > 0.0).cast<double>();
   return solution;
 }
@@ -171,15 +174,14 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_motion,
                              .progress = options.progress};
-  const TangentialProblem loads{.friction_bound = problem.friction_bound,
-                                .moment = problem.moment,
+  const TangentialProblem loads{.moment = problem.moment,
                                 .twist = problem.twist,
                                 .force = problem.force,
                                 .displacement = problem.displacement};
   const bool turns = !grid.quadrant && !problem.force && !problem.displacement &&
                      turns_into_itself(problem.initial_displacement) && turns_into_itself(problem.start);
-  NestedSummary nested =
-      solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem), turns), newton, options.on_cells_known);
+  TangentialOnGrid contact(grid, std::move(problem), turns);
+  NestedSummary nested = solve_nested(elasticity, grid, contact, newton, options.on_cells_known);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
@@ -195,7 +197,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.safeguards = nested.safeguards;
   solution.part = nested.part;
   solution.slip = std::move(nested.slip);
-  solution.stick = stick_area(solution.traction, loads.friction_bound);
+  solution.stick = contact.stick_area(solution.traction);
   return solution;
 }
 

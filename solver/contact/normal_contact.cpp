@@ -99,6 +99,7 @@ class PressureOnGrid {
     }
     result.field = packing_.unpacked(result.field);
     set_candidates([&](Index i) { return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + missed; });
+    for (ArrayXd* const field : {&displacement_, &result.slip, &result.displacement}) field->resize(0);
     return true;
   }
 
@@ -146,7 +147,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,
                              .progress = options.progress};
-  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton, options.on_cells_known);
+  NestedSummary nested = solve_nested(elasticity, grid, contact, newton, options.on_cells_known);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

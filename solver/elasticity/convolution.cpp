@@ -72,7 +72,8 @@ auto Convolution::multiply_for(const BlockKernel& kernel) -> Multiply {
 
 Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)),
-      transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
+      transform_(grid, fields(this->kernel()), std::max(options.threads, 1),
+                 scratch_size(grid, this->kernel(), options)),
       components_(this->kernel().distinct()),
       spectra_(components_.size() * count(transform_.own_columns(grid).count() * (padded1() / 2 + 1))),
       multiply_(multiply_for(this->kernel())) {

@@ -65,8 +65,8 @@ using Held = std::array<double, 3>;
 struct HeldOf {
   Held op, newton, of_cells;
 };
-constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.75, 1.0, 1.0}, {3.0, 3.0, 3.0}};
-constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.7, 1.4, 1.4}, {5.9, 5.9, 5.9}};
+constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.5, 1.0, 1.0}, {3.0, 3.0, 3.0}};
+constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.2, 1.4, 1.4}, {5.9, 5.9, 5.9}};
 constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
 /// Shorter sides take as much memory as this many cells, since lines are transformed in groups.
 constexpr Index kMinSide = 16;

@@ -18,6 +18,10 @@ Grid padded(const Grid& grid, bool at_edge) {
   return {fast_length(grid.n1 + margin), fast_length(grid.n2 + margin), grid.h1, grid.h2};
 }
 
+PeriodicTransform::Shape shape(const Grid& grid, const Grid& periodic, bool tangential) {
+  return {.n1 = periodic.n1, .n2 = periodic.n2, .fields = tangential ? 2 : 1, .samples = grid.n1, .ranks = grid.ranks};
+}
+
 std::vector<Index> frequencies(const IndexRange& columns) {
   std::vector<Index> result(static_cast<std::size_t>(columns.count()));
   std::iota(result.begin(), result.end(), columns.first);
@@ -74,13 +78,9 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
+  std::span<double> idle_memory() const override { return transform_.idle_memory(); }
 
  private:
-  static PeriodicTransform::Shape shape(const Grid& grid, const Grid& periodic, bool tangential) {
-    return {
-        .n1 = periodic.n1, .n2 = periodic.n2, .fields = tangential ? 2 : 1, .samples = grid.n1, .ranks = grid.ranks};
-  }
-
   /// Where row i of a field is transformed: where it is, if it needs no zeros.
   double* row(int thread, double* values) {
     const bool fits = grid_.n2 == periodic_.n2 && PeriodicTransform::is_aligned(values);
@@ -130,6 +130,12 @@ class PeriodicInverseSymbol final : public InverseSymbol {
 };
 
 }  // namespace
+
+std::size_t scratch_size(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options) {
+  if (part_of(grid, kernel, options.diagonal) != Part::whole || grid.ranks.several()) return 0;
+  return PeriodicTransform::plane_size(shape(grid, padded(grid, options.at_edge), kernel.inputs == 2)) +
+         count(static_cast<Index>(kernel.inputs) * grid.cells());
+}
 
 std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel, const ElasticLaw& law,
                                                    const OperatorOptions& options) {

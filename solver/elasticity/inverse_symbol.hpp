@@ -29,6 +29,8 @@ class InverseSymbol {
   /// Means of the diagonal symbols over all frequencies, one per component (equal for the normal kernel): the
   /// diagonal of the operator on a whole grid, and on a quadrant away from its axes.
   virtual std::array<double, 2> diagonal() const = 0;
+  /// The part of OperatorOptions::memory that it does not use.
+  virtual std::span<double> idle_memory() const { return {}; }
 };
 
 /// The inverse symbol for the fields of part_of(). Throws as that, and std::invalid_argument for a kernel

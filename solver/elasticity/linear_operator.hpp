@@ -84,7 +84,7 @@ class LinearOperator {
   /// Applications so far.
   long applications() const { return applications_; }
   void restart_count() { applications_ = 0; }
-  /// Its memory that may be overwritten between applications.
+  /// Its memory that may be overwritten between applications: of a convolution on a whole grid scratch_size() at least.
   virtual std::span<double> idle_memory() { return {}; }
 
  protected:
@@ -121,6 +121,8 @@ struct OperatorOptions {
   std::span<double> memory = {};  ///< scratch for the preconditioner's applications; not owned
 };
 
+/// Numbers of `memory` that hold a field of a whole grid in addition to what applications of the preconditioner take.
+std::size_t scratch_size(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options);
 /// The operator for the fields of part_of(). Throws as that, and std::invalid_argument for a kind other than
 /// dcfft on a part of a grid.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,

@@ -36,8 +36,8 @@ class PaddedTransform {
     std::array<Complex*, 2> odd;
   };
 
-  /// For one or two fields at a time.
-  PaddedTransform(const Grid& grid, std::size_t fields, int threads)
+  /// For one or two fields at a time. least_memory: numbers that memory() has at least.
+  PaddedTransform(const Grid& grid, std::size_t fields, int threads, std::size_t least_memory = 0)
       : grid_(grid),
         fields_(fields),
         threads_(threads),
@@ -46,7 +46,8 @@ class PaddedTransform {
         zero_row_(count(grid.n2)),
         shared_(shared_matrix(grid)),
         layout_(layout()),
-        columns_(2 * fields * layout_.field) {
+        memory_size_(std::max(2 * fields * layout_.field, least_memory)),
+        columns_(memory_size_) {
     for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(scratch_size()));
     const auto plan = [&](Index length, Index out, int direction) {
       auto* const start = scratch_.front().complex();
@@ -61,7 +62,7 @@ class PaddedTransform {
 
   int threads() const { return threads_; }
   /// Scratch, free between applications.
-  std::span<double> memory() { return {columns_.data(), 2 * fields_ * layout_.field}; }
+  std::span<double> memory() { return {columns_.data(), memory_size_}; }
   Index padded1() const { return 2 * axis1_.m; }
   Index padded2() const { return 2 * axis2_.m; }
   /// The m2 + 1 frequencies along x2 that determine a real field: first the even ones, then the odd ones.
@@ -348,6 +349,7 @@ class PaddedTransform {
   std::vector<double> zero_row_;
   RankTranspose shared_;
   Layout layout_;
+  std::size_t memory_size_;
   FftwBuffer columns_;               ///< of all fields
   std::vector<FftwBuffer> scratch_;  ///< for each thread
   PlanePlans plans_;

@@ -51,8 +51,9 @@ class PeriodicTransform {
         own_samples_(own_rows(shape.samples, shape.ranks)),
         shared_(shared_matrix(shape)),
         row_stride_(shared_.row_step()),
-        own_plane_(memory.size() < plane_size() ? FftwBuffer(plane_size()) : FftwBuffer()),
-        plane_(memory.size() < plane_size() ? own_plane_.data() : memory.data()) {
+        idle_memory_(memory.subspan(std::min(plane_size(shape), memory.size()))),
+        own_plane_(memory.size() < plane_size(shape) ? FftwBuffer(plane_size(shape)) : FftwBuffer()),
+        plane_(memory.size() < plane_size(shape) ? own_plane_.data() : memory.data()) {
     auto* const spectrum = numbers(plane_);
     const int length = static_cast<int>(shape.n2);
     for (int thread = 0; thread < threads; ++thread) {
@@ -68,6 +69,9 @@ class PeriodicTransform {
               FftwPlan(plan_transforms(lines, columns, columns, FFTW_BACKWARD))};
   }
 
+  /// Numbers of the plane, and the memory beyond them.
+  static std::size_t plane_size(const Shape& shape) { return count(shape.fields * shared_matrix(shape).size()); }
+  std::span<double> idle_memory() const { return idle_memory_; }
   int threads() const { return threads_; }
   /// work(thread, field, i) for the samples of this rank in the first `fields` fields.
   template <typename Work>
@@ -137,7 +141,6 @@ class PeriodicTransform {
     shared.pad = 1 - shape.ranks.number() * shared.columns_of_rank() % 2;
     return shared;
   }
-  std::size_t plane_size() const { return count(shape_.fields * shared_.size()); }
   Index columns_size() const { return 2 * kColumns * shape_.n1; }
   double* plane(Index field) { return plane_ + field * shared_.size(); }
   /// n2/2 + 1 complex numbers, each its real, then its imaginary part.
@@ -167,6 +170,7 @@ class PeriodicTransform {
   /// Reals from one row to the next: an odd number of cache lines, so that a column is spread over the cache
   /// whatever its length.
   Index row_stride_;
+  std::span<double> idle_memory_;
   FftwBuffer own_plane_;
   double* plane_;
   std::vector<FftwBuffer> own_rows_;  ///< for each thread

@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
 namespace slipstick::solver {
 
@@ -13,6 +19,17 @@ Index fast_length(Index minimum) {
     }
     if (rest == 1) return length;
   }
+}
+
+Eigen::ArrayXd zeros(Index values) {
+  Eigen::ArrayXd field = Eigen::ArrayXd::Zero(values);
+#ifdef __linux__
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::size_t left = sizeof(double) * static_cast<std::size_t>(values);
+  void* whole = field.data();
+  if (std::align(page, page, whole, left) != nullptr) madvise(whole, left / page * page, MADV_DONTNEED);
+#endif
+  return field;
 }
 
 Eigen::ArrayXd cell_x1(const Grid& grid) {

@@ -62,6 +62,9 @@ inline constexpr double kCutBySide = 0.5;
 /// side of the edge; 0 for a punch's face, which has the cells whose centres lie on it.
 CountedArea counted_area(const Grid& grid, const Eigen::ArrayXd& inside, double by_side = kCountedBySide);
 
+/// Zeros. On Linux their pages are given back, and take memory again only where they are written.
+Eigen::ArrayXd zeros(Index values);
+
 /// x1 and x2 of all cell centres: n1*n2 values each.
 Eigen::ArrayXd cell_x1(const Grid& grid);
 Eigen::ArrayXd cell_x2(const Grid& grid);

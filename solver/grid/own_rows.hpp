@@ -45,7 +45,7 @@ inline void share_rows(const Grid& grid, Eigen::ArrayXd& field) {
 }
 
 /// Brings `depth` rows on each side of this rank's own into a field of any number of components.
-inline void share_adjacent_rows(const Grid& grid, Eigen::ArrayXd& field, Index depth) {
+inline void share_adjacent_rows(const Grid& grid, auto& field, Index depth) {
   for (Index start = 0; start < field.size(); start += grid.cells()) {
     grid.ranks.gather_adjacent(std::span(field.data() + start, static_cast<std::size_t>(grid.cells())), grid.n1,
                                rows_of_rank(grid.n1, grid.ranks), depth);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace slipstick::solver {
 namespace {
@@ -143,7 +144,7 @@ Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& cont
 ArrayXd Reduction::restricted(ArrayXd field) const {
   if (field.size() == 0) return field;
   if (trimmed()) field = middle(whole_, trimmed_, field);
-  return quadrant() ? restrict_to_quadrant(trimmed_, field) : field;
+  return quadrant() ? restrict_to_quadrant(trimmed_, field) : std::move(field);
 }
 
 ArrayXd Reduction::expanded(ArrayXd field, const Symmetry& symmetry) const {

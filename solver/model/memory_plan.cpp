@@ -18,12 +18,12 @@ namespace {
 
 /// Doubles a cell of the whole grid that a solve holds in addition to operators and workspaces. All of these
 /// numbers are measured by convergence/solve/tests/memory_test.py.
-constexpr double kFieldsHeld = 3.2;
+constexpr double kFieldsHeld = 2.2;
 /// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
 constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, without operators and workspaces.
 constexpr double kFieldsAround = 12.0;
-constexpr double kFieldsAroundPressure = 9.3;  ///< where only the pressure is solved
+constexpr double kFieldsAroundPressure = 8.8;  ///< where only the pressure is solved
 /// Doubles a cell of the whole grid that the solve of a pressure holds in addition to operators and workspaces.
 constexpr double kFieldsOfPressure = 1.4;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
@@ -36,11 +36,15 @@ constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
 /// Doubles a cell of a padded grid while stresses are computed, and for each state of a cycle.
 constexpr double kFieldsOfStresses = 80.0, kFieldsOfState = 9.5;
-/// The program and its libraries, that for HDF5 included; where several processes share a grid MPI's too.
-double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
+/// Doubles a cell of the whole grid, and bytes at most, in freed blocks: see keep_freed_blocks().
+constexpr double kFieldsKept = 1.3, kMostKept = 0x1p26;
 double field_bytes(double fields, Index cells) { return fields * sizeof(double) * static_cast<double>(cells); }
+/// The program, freed blocks and libraries, that for HDF5 included; where several processes share a grid MPI's too.
+double program_bytes(const Grid& grid) {
+  return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20 + std::min(field_bytes(kFieldsKept, grid.cells()), kMostKept);
+}
 double bytes_around(const Scene& scene, const Grid& grid) {
-  const bool pressure = scene.contact.friction.is_frictionless() && scene.solver.model == ModelChoice::full;
+  const bool pressure = scene.contact.friction.is_frictionless() && scene.solver.method == Method::coulomb;
   return field_bytes(pressure ? kFieldsAroundPressure : kFieldsAround, grid.cells());
 }
 

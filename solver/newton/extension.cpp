@@ -33,10 +33,11 @@ void add_to_blocks(const Row& cells, double* sums) {
 
 }  // namespace
 
-Extension::Extension(const Grid& grid, Index components)
+Extension::Extension(const Grid& grid, Index components, std::span<double> memory)
     : grid_(grid),
       weights_((components == 1 ? 1 : 3) * grid.cells()),
-      work_(components * grid.cells()),
+      own_work_(static_cast<Index>(memory.size()) < components * grid.cells() ? components * grid.cells() : 0),
+      work_(own_work_.size() > 0 ? own_work_.data() : memory.data(), components * grid.cells()),
       mixed_(Sweep::whole(grid)) {
   Index n1 = grid.n1;
   Index n2 = grid.n2;
@@ -116,11 +117,11 @@ void Extension::spread_blocks(Index component) {
 }
 
 /// take(first, count, sums) for the cells of mixed_, with the weighted sums of each component over nearby
-/// cells. The field is zero outside the grid, and is not read, or zero, outside mixed_.
+/// cells. The field is zero outside the grid, and is read in mixed_ and around_.
 template <std::size_t components, typename Take>
-void Extension::spread(const Field& in, const Take& take) {
+void Extension::spread(const double* in, const Take& take) {
   for (std::size_t c = 0; c < components; ++c) {
-    fill_blocks(in.data() + static_cast<Index>(c) * grid_.cells(), static_cast<Index>(c));
+    fill_blocks(in + static_cast<Index>(c) * grid_.cells(), static_cast<Index>(c));
     spread_blocks(static_cast<Index>(c));
   }
   mixed_.each([&](Index first, Index last) {
@@ -131,7 +132,7 @@ void Extension::spread(const Field& in, const Take& take) {
       const Index column = start - row * grid_.n2;
       for (std::size_t c = 0; c < components; ++c) {
         const auto component = static_cast<Index>(c);
-        sums[c] = near_sums(in.data() + component * grid_.cells(), grid_.n1, grid_.n2, row, column, column + count);
+        sums[c] = near_sums(in + component * grid_.cells(), grid_.n1, grid_.n2, row, column, column + count);
         add_means(blocks_[0], component, row, column, count, sums[c]);
       }
       take(start, count, sums);
@@ -139,7 +140,7 @@ void Extension::spread(const Field& in, const Take& take) {
   });
 }
 
-/// mixed_: the coarsest blocks within reach of a free cell and of a cell that is not, or not wholly, free.
+/// mixed_: the coarsest blocks within reach of a free cell and of a cell that is not, or not wholly, free; around_.
 template <typename IsFree>
 void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
   if (std::max(grid_.n1, grid_.n2) <= kAllMixed) return;
@@ -154,11 +155,21 @@ void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
   };
   const Eigen::ArrayXXd from = reached(1.0, 0.0);
   const Eigen::ArrayXXd to = reached(free_is_whole ? 0.0 : 1.0, 1.0);
-  mixed_.assign([&](Index cell) {
-    const Index row = cell / grid_.n2 / kCoarsest;
-    const Index column = cell % grid_.n2 / kCoarsest;
-    return from(column, row) > 0.0 && to(column, row) > 0.0;
+  constexpr int kAround = 1, kMixed = 2;
+  Eigen::ArrayXXi framed = Eigen::ArrayXXi::Zero(from.rows() + 2, from.cols() + 2);
+  framed.block(1, 1, from.rows(), from.cols()) = (from > 0.0 && to > 0.0).cast<int>();
+  const Eigen::ArrayXXi kinds = Eigen::ArrayXXi::NullaryExpr(from.rows(), from.cols(), [&](Index i, Index j) {
+    return framed(i + 1, j + 1) > 0 ? kMixed : framed.block<3, 3>(i, j).maxCoeff() * kAround;
   });
+  for (const int kind : {kAround, kMixed}) {
+    Sweep& cells = kind == kMixed ? mixed_ : around_;
+    cells = Sweep(grid_);
+    Index row = 0;
+    cells.assign([&](Index cell) {  // cells come in order
+      while (cell >= (row + 1) * grid_.n2) ++row;
+      return kinds((cell - row * grid_.n2) / kCoarsest, row / kCoarsest) == kind;
+    });
+  }
 }
 
 /// free_part(cell): the matrix of the free part of a cell's vector. weights(cell, near): the matrix that
@@ -172,11 +183,10 @@ void Extension::prepare_with(const FreePart& free_part, const Weights& weights) 
       for (Index i = first; i < first + count; ++i) work_[i] = free_part(i)[entry];
     });
     share_adjacent_rows(grid_, work_, kReach);
-    spread<1>(work_, [&](Index first, Index count, const auto& sums) {
+    spread<1>(work_.data(), [&](Index first, Index count, const auto& sums) {
       weights_.segment(static_cast<Index>(entry) * n + first, count) = sums[0].head(count).unaryExpr(&to_tangent);
     });
   }
-  clear(mixed_, work_);
   mixed_.each([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) {
       Matrix near{};
@@ -257,7 +267,7 @@ void Extension::multiply(Index first, Index count, std::array<Line, components>&
 
 template <std::size_t components>
 void Extension::extend_all(Field& y) {
-  spread<components>(y, [&](Index first, Index count, auto& sums) {
+  spread<components>(y.data(), [&](Index first, Index count, auto& sums) {
     multiply(first, count, sums);
     for (std::size_t c = 0; c < components; ++c)
       work_.segment(static_cast<Index>(c) * grid_.cells() + first, count) = sums[c].head(count);
@@ -270,6 +280,9 @@ void Extension::extend_all(Field& y) {
 
 template <std::size_t components>
 void Extension::collect_all(Field& y) {
+  around_.each([&](Index first, Index last) {
+    for (Index start = first; start < y.size(); start += grid_.cells()) work_.segment(start, last - first).setZero();
+  });
   mixed_.each([&](Index first, Index last) {
     std::array<Line, components> values;
     for (Index start = first; start < last; start += kChunk) {
@@ -281,7 +294,7 @@ void Extension::collect_all(Field& y) {
     }
   });
   share_adjacent_rows(grid_, work_, kReach);
-  spread<components>(work_, [&](Index first, Index count, const auto& sums) {
+  spread<components>(work_.data(), [&](Index first, Index count, const auto& sums) {
     for (std::size_t c = 0; c < components; ++c)
       y.segment(static_cast<Index>(c) * grid_.cells() + first, count) += sums[c].head(count);
   });

@@ -29,8 +29,8 @@ class Extension {
  public:
   using Field = Eigen::ArrayXd;
 
-  /// For fields of one or two components on a grid.
-  Extension(const Grid& grid, Index components);
+  /// For fields of one or two components on a grid. memory: scratch, used if it holds such a field; not owned.
+  Extension(const Grid& grid, Index components, std::span<double> memory = {});
 
   /// From a space whose preconditioner is set; packing: the space's. Fields of the functions here need be
   /// known only in this rank's rows; adjacent rows are exchanged.
@@ -72,7 +72,7 @@ class Extension {
   void fill_blocks(const double* in, Index component);
   void spread_blocks(Index component);
   template <std::size_t components, typename Take>
-  void spread(const Field& in, const Take& take);
+  void spread(const double* in, const Take& take);
   template <std::size_t components>
   void multiply(Index first, Index count, std::array<Line, components>& values) const;
   template <std::size_t components>
@@ -83,8 +83,10 @@ class Extension {
   Grid grid_;
   std::array<Level, 2> blocks_;
   Eigen::ArrayXf weights_;      ///< a matrix each cell, of the sums near by: entry by entry
-  Field work_;                  ///< 0 but in mixed_
+  Field own_work_;              ///< empty where memory is given
+  Eigen::Map<Field> work_;      ///< of a field
   Sweep mixed_;                 ///< over the blocks of cells that reach each other, and are not all free
+  Sweep around_;                ///< over the other blocks next to these
   bool knows_contact_ = false;  ///< of vectors, which stays
 };
 

@@ -124,7 +124,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
 /// solve_on_grids(), then, once operators and workspaces are freed, field and slip are made whole; the
 /// displacement is known in this rank's rows.
 template <NestedProblem Problem>
-NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
+NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                            const NewtonOptions& options, const OnCellsKnown& on_cells_known) {
   NestedSummary result = solve_on_grids(elasticity, grid, problem, options, on_cells_known);
   for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement}) *field = problem.packing().unpacked(*field);

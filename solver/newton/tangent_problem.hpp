@@ -60,7 +60,7 @@ class TangentProblem {
         d_(state.size()),
         space_(Set::kComponents, state.set().sweep()),
         extends_(kIsScalar || state.set().sweep().is_ragged()),
-        extension_(extends_ ? state.op().grid() : Grid{}, Set::kComponents) {
+        extension_(extends_ ? state.op().grid() : Grid{}, Set::kComponents, symbol.idle_memory()) {
     for (CgTangent& tangent : tangents_) tangent.resize(state.size());
   }
 

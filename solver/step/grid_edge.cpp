@@ -62,25 +62,28 @@ Grid surroundings(const Scene& scene, const Model& model, double approach) {
 }
 
 /// The undeformed gap on a larger grid of the same cells, at the level that it has on the model's.
-ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger, const Reduction& inside) {
-  const ArrayXd gap = gap_field(dimensionless_surfaces(scene, model), scene.combine, larger);
+ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger) {
+  ArrayXd gap = gap_field(dimensionless_surfaces(scene, model), scene.combine, larger);
   Index lowest = 0;
   const double height = model.gap.minCoeff(&lowest);
-  return gap + (height - inside.restricted(gap)[lowest]);
+  gap += height - Reduction(larger, model.grid).restricted(gap)[lowest];
+  return gap;
 }
 
 /// Displacement that opens the gap on a larger grid, by the pressure and, unless it is empty, a traction.
 ArrayXd opening(const Model& model, const Grid& larger, const ArrayXd& pressure, const ArrayXd& traction) {
   const Elasticity elastic{.law = model.law, .threads = model.threads};
+  const Reduction inside(larger, model.grid);
+  const auto there = [&](const ArrayXd& field) { return inside.expanded(field, normal_symmetry()); };
   const bool pressed_only = traction.size() == 0;
   const Reduction part = pressed_only && model.pressure_part.quadrant()
-                             ? Reduction(larger, pressure, ArrayXd::Ones(larger.cells()))
+                             ? Reduction(larger, there(pressure), ArrayXd::Ones(larger.cells()))
                              : Reduction(larger);
   const auto op = elastic.make(part.grid(), normal_kernel());
-  ArrayXd u = part.restricted(pressure);
+  ArrayXd u = part.restricted(there(pressure));
   op->apply(u, u);
   u = part.expanded(std::move(u), normal_symmetry());
-  if (!pressed_only) u += ShearOpening(elastic, larger)(traction);
+  if (!pressed_only) u += ShearOpening(elastic, larger)(there(traction));
   return u;
 }
 
@@ -94,16 +97,18 @@ std::optional<std::array<double, 2>> sides_of_overlap(const Scene& scene, const 
     return std::nullopt;
   const Grid larger = surroundings(scene, model, normal.approach);
   if (larger.cells() == grid.cells()) return std::nullopt;
-  const Reduction inside(larger, grid);
-  const auto there = [&](const ArrayXd& field) { return inside.expanded(field, normal_symmetry()); };
-  const ArrayXd u = opening(model, larger, there(normal.pressure), there(traction));
-  const ArrayXd gap = continued_gap(scene, model, larger, inside) + (u - normal.approach);
-  const ArrayXd overlap = 1.0 - (gap >= -kOpen * u.maxCoeff()).cast<double>().max(there(ArrayXd::Ones(grid.cells())));
-  if ((overlap == 0.0).all()) return std::nullopt;
-  const auto side = [&](const ArrayXd& x, Index n, double h) {
-    return std::max(static_cast<double>(n) * h, 2.0 * (overlap * x.abs()).maxCoeff() + 3.0 * h);
-  };
-  return std::array{side(cell_x1(larger), grid.n1, grid.h1), side(cell_x2(larger), grid.n2, grid.h2)};
+  const ArrayXd u = opening(model, larger, normal.pressure, traction);
+  const ArrayXd gap = continued_gap(scene, model, larger);
+  const double open = -kOpen * u.maxCoeff();
+  std::array<double, 2> sides{static_cast<double>(grid.n1) * grid.h1, static_cast<double>(grid.n2) * grid.h2};
+  const auto whole = sides;
+  for (Index cell = 0; cell < larger.cells(); ++cell) {
+    if (gap[cell] + (u[cell] - normal.approach) >= open) continue;
+    const double x1 = std::abs(larger.x1(cell / larger.n2)), x2 = std::abs(larger.x2(cell % larger.n2));
+    if (2.0 * x1 < whole[0] && 2.0 * x2 < whole[1]) continue;  // within the grid
+    sides = {std::max(sides[0], 2.0 * x1 + 3.0 * grid.h1), std::max(sides[1], 2.0 * x2 + 3.0 * grid.h2)};
+  }
+  return sides == whole ? std::nullopt : std::optional(sides);
 }
 
 }  // namespace

@@ -203,7 +203,7 @@ std::string message_of(const SolvedStep& solved) {
 }
 
 ArrayXd times(ArrayXd field, double unit) {
-  field *= unit;
+  if ((field != 0.0).any()) field *= unit;  // see zeros()
   return field;
 }
 

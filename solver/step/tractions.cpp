@@ -137,12 +137,12 @@ double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const
   return before.energy * std::min(1.0, load * load / size);
 }
 
-void expand(TangentialSolution& solution, const Reduction& part) {
+void expand(TangentialSolution& solution, const Reduction& part, const Grid& whole) {
   if (!part.trimmed() && !part.quadrant()) return;
   ArrayXd& u = solution.elastic_displacement;
   share_rows(part.grid(), u);
   for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
-    *field = part.expanded(std::move(*field), torsion_symmetry());
+    *field = (*field == 0.0).all() ? zeros(2 * whole.cells()) : part.expanded(std::move(*field), torsion_symmetry());
   }
   solution.stick = part.expanded(solution.stick, normal_symmetry());
 }
@@ -207,7 +207,7 @@ FoundTractions find_tractions(const Scene& scene, const Model& model, LoadStep l
   TangentialProblem problem = reduced(loads.problem, part);
   problem.guess = part.restricted(goal.guess);
   TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
-  expand(solution, part);
+  expand(solution, part, model.grid);
   loads.problem.friction_bound = model.friction.bound(pressure);
   return {std::move(loads), std::move(solution), omissions(scene, model, part, translations)};
 }

@@ -112,7 +112,7 @@ TEST_P(InverseSymbolOf, IsLinearRemembersNothingAndAllocatesNothing) {
   EXPECT_TRUE((again == Px).all());
 }
 
-/// The memory's previous content does not matter.
+/// The memory's previous content does not matter, and the part that is left keeps it.
 TEST_P(InverseSymbolOf, HasTheSameBitsInMemoryThatItIsGiven) {
   FftwBuffer memory(1 << 16);
   const std::span<double> all(memory.data(), 1 << 16);
@@ -120,7 +120,10 @@ TEST_P(InverseSymbolOf, HasTheSameBitsInMemoryThatItIsGiven) {
   for (const ArrayXd& x : {random(5), random(6)}) {
     std::ranges::fill(all, std::numeric_limits<double>::quiet_NaN());
     EXPECT_TRUE((applied(*symbol, x) == applied(*make(), x)).all());
+    EXPECT_TRUE(std::ranges::all_of(symbol->idle_memory(), [](double value) { return std::isnan(value); }));
   }
+  const std::size_t size = scratch_size(GetParam().grid, GetParam().kernel(), {.diagonal = GetParam().diagonal});
+  EXPECT_EQ(make(0.3, all.first(size))->idle_memory().size(), size > 0 ? GetParam().size() : 0);
 }
 
 TEST_P(InverseSymbolOf, RefusesFieldsOfAnotherSize) {

@@ -19,6 +19,13 @@ TEST(FastLength, IsTheSmallestEvenProductOfSmallPrimes) {
   }
 }
 
+TEST(Zeros, GivesBackNoPagesOfOtherFields) {
+  for (const Index values : {0, 1, 700, 1500, 1 << 20}) {
+    const Eigen::ArrayXd before = Eigen::ArrayXd::Ones(values), field = zeros(values), after = before;
+    EXPECT_TRUE((before == 1.0).all() && (field == 0.0).all() && (after == 1.0).all()) << values;
+  }
+}
+
 TEST(CountedArea, AnEdgeHasTheSidesThatItHas) {
   const Grid grid{6, 5, 0.5, 0.25};
   Eigen::ArrayXd inside = Eigen::ArrayXd::Zero(grid.cells());

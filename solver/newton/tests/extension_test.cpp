@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <utility>
 
 #include "solver/newton/tangent_space.hpp"
@@ -97,7 +98,7 @@ TEST(Extension, ContinuesWhatSlipHoldsFast) {
 }
 
 /// A spot's continuation moves with it by whole blocks, bit by bit, also to where the grid ends, which is
-/// like cells that are not free.
+/// like cells that are not free. Borrowed memory full of NaN gives the same bits.
 TEST(Extension, MovesWithTheContact) {
   const Grid grid{512, 520, 1.0, 1.0};
   constexpr Index kRows = 90;
@@ -112,13 +113,16 @@ TEST(Extension, MovesWithTheContact) {
   struct Continued {
     Eigen::ArrayXXd extended, collected;
   };
-  const auto continued = [&](Index row, Index column) {
-    Extension extension(grid, 1);
+  ArrayXd borrowed = ArrayXd::Constant(grid.cells(), std::numeric_limits<double>::quiet_NaN());
+  const auto continued = [&](Index row, Index column, std::span<double> memory = {}) {
+    Extension extension(grid, 1, memory);
     ArrayXd free = placed(spot, row, column);
-    extension.prepare(free);
     ArrayXd extended = placed(spot * values, row, column);
     ArrayXd collected = placed(values, row, column);
+    extension.prepare(free);
+    borrowed.setConstant(std::numeric_limits<double>::quiet_NaN());
     extension.extend(extended);
+    borrowed.setConstant(std::numeric_limits<double>::quiet_NaN());
     extension.collect(collected);
     collected *= free;
     const auto window = [&](const ArrayXd& field) -> Eigen::ArrayXXd {
@@ -129,7 +133,7 @@ TEST(Extension, MovesWithTheContact) {
   const Continued here = continued(192, 208);
   EXPECT_TRUE(((here.extended != 0.0) || (spot != 0.0)).all());  // holes are narrower than the reach
   for (const auto& [row, column] : {std::pair<Index, Index>{208, 192}, {176, 256}, {0, 0}, {416, 448}}) {
-    const Continued there = continued(row, column);
+    const Continued there = continued(row, column, std::span(borrowed.data(), static_cast<std::size_t>(grid.cells())));
     EXPECT_TRUE((there.extended == here.extended).all()) << row << ", " << column;
     EXPECT_TRUE((there.collected == here.collected).all()) << row << ", " << column;
   }
