@@ -33,8 +33,9 @@ constexpr double kOfCells = 8e-3;
 constexpr double kLeastRing = 0.02;
 /// Part of these cells that the contact must fill, at least, along its diameter.
 constexpr double kPathAcross = 0.5;
-/// Differences of parts are small, and each part leaves what the tolerance allows.
+/// Differences of parts are small, and each part leaves what the tolerance allows: of one part, and of all of a step.
 constexpr double kPathTolerance = 1e-7;
+constexpr double kToleranceOfParts = 1e-6;
 /// Error of n parts over its difference from 4 n parts, so that 1 of 100 random histories is further off. An
 /// error that falls like 1/n would make it 4/3, but a single part is not there yet: 1.8 to 2.4 for pushes
 /// before twists and both at once, spheres and ellipsoids of up to 10 to 1; 3.0 for an ellipsoid of 2 to 1
@@ -98,7 +99,6 @@ std::optional<Scene> on_few_cells(const Scene& scene, double cells) {
   if (scene.contact.pressure == PressureModel::file) return std::nullopt;
   Scene coarse = scene;
   coarse.contact.friction.map.clear();
-  coarse.solver.tolerance = kPathTolerance;
   coarse.solver.op = OperatorKind::dcfft;
   coarse.solver.model = ModelChoice::automatic;
   coarse.solver.threads = 1;
@@ -142,8 +142,9 @@ std::optional<Scene> coarse_scene(const Scene& scene, const Solution& solution, 
 }
 
 /// The ends of the steps up to the first that cannot be solved.
-std::vector<LoadNumbers> ends_of(const Scene& scene) {
+std::vector<LoadNumbers> ends_of(Scene scene) {
   std::vector<LoadNumbers> ends;
+  scene.solver.tolerance = std::min(kPathTolerance, kToleranceOfParts / scene.solver.substeps);
   SolveOptions options{.detail = Detail::loads};
   options.observer.step = [&](const Solution& at) {
     if (at.status == Status::converged) ends.push_back(at);
