@@ -101,7 +101,7 @@ std::pair<double, double> nearest_factor(const Off& off) {
   double best = high - kGolden * (high - low);
   double at_best = off(std::exp(best));
   for (int i = 0; i < kSections; ++i) {
-    const double next = low + high - best;  // its image in the interval, of which the part beyond the worse one goes
+    const double next = low + high - best;  // its image in the interval, which then ends at the worse one
     const double at_next = off(std::exp(next));
     const bool nearer = next < best ? at_next < at_best : at_next <= at_best;
     const double worse = nearer ? best : next;

@@ -65,7 +65,7 @@ struct ReferenceOnGrid {
 /// as `contact` is; moments are over the cell area.
 struct Examination {
   solver::Scene scene;
-  Interpretation read;  ///< with the twist's convention; the field's values are those of `contact`
+  Interpretation read;  ///< with the twist's convention; `contact` has the field's values
   OracleAnswer exact;   ///< positions are about the centre of the field's grid
   GivenContact contact;
   ReferenceOnGrid reference;
