@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 
 #include "bench/suite/suite.hpp"
 #include "convergence/results/provenance.hpp"
