@@ -38,8 +38,7 @@ class InputFile {
     if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
   }
 
-  /// Reads to the end, or until there are `most` bytes: a file may grow meanwhile, and files of the system have no
-  /// size.
+  /// Reads to the end, or `most` bytes and some: a file may grow meanwhile, and files of the system have no size.
   std::string read(std::uintmax_t most) const {
     struct stat status {};
     std::string text;
