@@ -38,8 +38,8 @@ struct NewtonSummary {
 /// 1. Multipliers: c.P(q - rho s) = load with s = Kq + g - multipliers c. Stop if gap / (q.Kq/2) is below the
 ///    tolerance.
 /// 2. Linearise: P(q - rho s) determines the state of each cell (stick, slip; contact, open).
-/// 3. Solve (K + stiffness) d = -s on the tangent space of these states by conjugate gradients; while many
-///    states change, d is their first direction times its usual length.
+/// 3. Solve (K + stiffness) d = -s on the tangent space of these states by conjugate gradients; for pressures
+///    and many spots d is their first direction times its usual length while many states change.
 /// 4. q + d is projected onto the set, and its loads restored along the tangents (K + stiffness)^-1 c. Near
 ///    gross slip that may fail, because cells jump onto their circles: then 3 is repeated without the loads
 ///    of the jumps. Negative pressures are redistributed to neighbouring cells.

@@ -35,8 +35,8 @@ inline constexpr double kLooseReductionOfRagged = 0.2;
 inline constexpr double kDistrust = 3.0;
 inline constexpr double kDistrustOfTractions = 1.5;
 /// While more than this part of the cells change their state, the first direction of conjugate gradients,
-/// times its usual length, replaces them: the states that it assumes are wrong, and the length, 0.7 to 0.9 on
-/// smooth and rough surfaces, costs as much as the next states.
+/// times its usual length, replaces them: the states that it assumes are wrong, and the length, 0.7 to 0.9,
+/// costs as much as the next states.
 inline constexpr double kManyChanges = 0.005;
 inline constexpr double kUsualStep = 0.8;
 /// Most iterations of one linear problem.
@@ -91,12 +91,12 @@ class TangentProblem {
   /// needed: tolerance over gap; applications_left: at least one; progress: the last step has lowered the gap.
   LinearTarget target(double needed, long applications_left, bool progress) const {
     const int iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));
-    const double changed = static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
-    const double known_step = progress && changed > kManyChanges ? kUsualStep : 0.0;
     if (!extends_) {
       const double reduction = changed_ > 0 ? kLooseReduction : kPartOfNeeded * needed;
-      return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations, known_step};
+      return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
     }
+    const double changed = static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
+    const double known_step = progress && changed > kManyChanges ? kUsualStep : 0.0;
     const double reduction =
         std::max(kPartOfNeeded * needed, (kIsScalar ? kDistrust : kDistrustOfTractions) * std::sqrt(changed));
     return {std::clamp(reduction, kTightReduction, kLooseReductionOfRagged), iterations, known_step};
