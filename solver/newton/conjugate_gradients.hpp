@@ -28,9 +28,7 @@ enum class CgStatus {
 struct CgOptions {
   double reduction;  ///< of the residual, in the norm of the preconditioner
   int max_iterations;
-  /// Length of the only step, along the first direction, which spares the map that would find it; 0: the
-  /// iteration.
-  double known_step = 0.0;
+  double known_step = 0.0;  ///< of the only step, along the first direction, which spares the map; 0: iterate
 };
 
 struct CgSummary {
