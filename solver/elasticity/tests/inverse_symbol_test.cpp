@@ -122,7 +122,7 @@ TEST_P(InverseSymbolOf, HasTheSameBitsInMemoryThatItIsGiven) {
     EXPECT_TRUE((applied(*symbol, x) == applied(*make(), x)).all());
     EXPECT_TRUE(std::ranges::all_of(symbol->idle_memory(), [](double value) { return std::isnan(value); }));
   }
-  const std::size_t size = scratch_size(GetParam().grid, GetParam().kernel(), {.diagonal = GetParam().diagonal});
+  const std::size_t size = scratch_size(GetParam().grid, GetParam().kernel, {.diagonal = GetParam().diagonal});
   EXPECT_EQ(make(0.3, all.first(size))->idle_memory().size(), size > 0 ? GetParam().size() : 0);
 }
 
