@@ -152,7 +152,6 @@ int run(int argc, char** argv, const Ranks& ranks) {
 
 int main(int argc, char** argv) {
   convergence::hold_standard_streams();
-  solver::prepare_heap();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     convergence::die_with_parent(argc, argv);
@@ -160,6 +159,7 @@ int main(int argc, char** argv) {
     std::optional<solver::JoinedRanks> joined;
     if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) joined.emplace();
     const Ranks ranks = joined ? joined->ranks() : Ranks();
+    if (ranks.number() == 1) solver::prepare_heap();  // one of several ranks returns what it frees
     int exit_code = kCouldNotJudge;
     std::string failure;
     try {

@@ -36,12 +36,13 @@ constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
 /// Doubles a cell of a padded grid while stresses are computed, and for each state of a cycle.
 constexpr double kFieldsOfStresses = 80.0, kFieldsOfState = 9.5;
-/// Doubles a cell of the whole grid, and bytes at most, in freed blocks: see keep_freed_blocks().
-constexpr double kFieldsKept = 1.3, kMostKept = 0x1p26;
+/// Doubles a cell of the whole grid, and bytes at most, in freed blocks, which one process keeps: see prepare_heap().
+constexpr double kFieldsKept = 3.0, kMostKept = 0x1p27;
 double field_bytes(double fields, Index cells) { return fields * sizeof(double) * static_cast<double>(cells); }
 /// The program, freed blocks and libraries, that for HDF5 included; where several processes share a grid MPI's too.
 double program_bytes(const Grid& grid) {
-  return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20 + std::min(field_bytes(kFieldsKept, grid.cells()), kMostKept);
+  if (grid.ranks.several()) return 35.0 * 0x1p20;
+  return 25.0 * 0x1p20 + std::min(field_bytes(kFieldsKept, grid.cells()), kMostKept);
 }
 double bytes_around(const Scene& scene, const Grid& grid) {
   const bool pressure = scene.contact.friction.is_frictionless() && scene.solver.method == Method::coulomb;
