@@ -1,7 +1,9 @@
 #include "solver/grid/grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 
 #ifdef __linux__
@@ -12,6 +14,8 @@
 namespace slipstick::solver {
 
 Index fast_length(Index minimum) {
+  const Index power = static_cast<Index>(std::bit_ceil(static_cast<std::size_t>(std::max<Index>(minimum, 4))));
+  if (16 * power <= 17 * minimum) return power;
   for (Index length = std::max<Index>(minimum + minimum % 2, 4);; length += 2) {
     Index rest = length;
     for (const Index factor : {2, 3, 5, 7}) {
