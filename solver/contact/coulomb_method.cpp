@@ -174,10 +174,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_motion,
                              .progress = options.progress};
-  const TangentialProblem loads{.moment = problem.moment,
-                                .twist = problem.twist,
-                                .force = problem.force,
-                                .displacement = problem.displacement};
+  const TangentialProblem loads{
+      .moment = problem.moment, .twist = problem.twist, .force = problem.force, .displacement = problem.displacement};
   const bool turns = !grid.quadrant && !problem.force && !problem.displacement &&
                      turns_into_itself(problem.initial_displacement) && turns_into_itself(problem.start);
   TangentialOnGrid contact(grid, std::move(problem), turns);

@@ -20,7 +20,7 @@ constexpr std::array kNumberVariables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM
 /// the block is freed.
 constexpr int kOwnMemory = 1 << 20;
 /// Bytes at the end of the heap that stay with the process when they are freed.
-constexpr int kKept = 64 << 20;
+constexpr int kKeptAtEnd = 64 << 20;
 /// Ranks that fail for the same reason end within a moment of each other.
 constexpr std::chrono::seconds kOthersEnd{10};
 
@@ -87,7 +87,7 @@ JoinedRanks::JoinedRanks() {
         "this build; use the mpirun of the build's MPI");
   }
   mallopt(M_MMAP_THRESHOLD, kOwnMemory);
-  mallopt(M_TRIM_THRESHOLD, kKept);
+  mallopt(M_TRIM_THRESHOLD, kKeptAtEnd);
   for (const char* name : kNumberVariables) unsetenv(name);  // programs that this one starts are no ranks
 }
 

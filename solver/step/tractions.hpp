@@ -36,7 +36,8 @@ struct LoadStep {
   LimitLoad limit;         ///< of the loads that the step imposes
   bool is_coulomb = true;  ///< the bound is mu p
 
-  bool carried() const { return limit.factor > 1.0; }
+  /// Loads at the limit are not carried, nor up to the rounding with which the pressure balances its load.
+  bool carried() const { return limit.factor > 1.0 + 1e-12; }
 };
 
 /// The change that a step of a scene brings to a contact under its pressure, on the model's grid.

@@ -72,6 +72,10 @@ class History(ProgramTest):
         steps = self.solved(CYCLE, "--set", "cycles=2")["steps"]
         self.assertEqual((len(steps), steps[3]["cycle"], steps[3]["name"]), (6, 2, "out"))
 
+    def test_refuses_the_force_that_friction_carries_on_any_grid(self):
+        for cells, force in itertools.product(([24, 24], [21, 26], [30, 33]), ([100.0, 0.0], [0.0, -100.0], [60.0, 80.0])):
+            self.solve(f"[[step]]\nforce = {force}\n", "--set", f"grid.cells={cells}", code=2, says=["slips everywhere"])
+
     def test_keeps_the_steps_before_gross_slip(self):
         self.solve(CYCLE, "--set", "step[2].moment=0.05", "--json", "r.json", code=2,
                    says=["step[2].moment = 0.05", "slips everywhere"])
