@@ -70,8 +70,7 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
              (q1 * t1 + q2 * t2).sum(), q1.sum(), q2.sum()},
             {worst}};
   });
-  // q.Kq/2, the gap; the sum of mu p, the moment if all slips; moment and force of the tractions. worst: max |q|/(mu
-  // p).
+  // q.Kq/2, the gap, the sum of mu p, the moment if all slips, moment and force of the tractions; max |q|/(mu p) or NaN
   const auto [elastic, gap, friction, limit, carried, force1, force2] = sums;
   // No friction, no traction: nothing to violate.
   if (friction == 0.0 && worst.value == 0.0) return {};

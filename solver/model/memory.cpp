@@ -93,8 +93,11 @@ void prepare_heap() {
   constexpr std::uintptr_t kHeap = 512 << 20;
   constexpr std::uintptr_t kPage = 2 << 20;
   mallopt(M_TRIM_THRESHOLD, -1);  // the heap never shrinks
-  rlimit addresses{};
-  if (getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur == RLIM_INFINITY) {
+  const auto is_unlimited = [](auto resource) {
+    rlimit limit{};
+    return getrlimit(resource, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+  };
+  if (is_unlimited(RLIMIT_AS) && is_unlimited(RLIMIT_DATA)) {
     mallopt(M_MMAP_MAX, 0);
     if (void* heap = std::malloc(kHeap)) {
       const auto start = (std::bit_cast<std::uintptr_t>(heap) + kPage - 1) & ~(kPage - 1);

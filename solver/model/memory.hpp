@@ -21,8 +21,8 @@ double available_memory(const std::filesystem::path& root = "/");
 
 /// Asks the system for large pages (2 MiB) for the first 512 MiB of the heap, which are addresses and take memory
 /// once they are written; and keeps freed blocks in this process: all of this part, and others of up to 16 MiB.
-/// Without both, a tenth of a solve is spent on mapping pages and finding them. For glibc on Linux; does nothing
-/// elsewhere. Called at program start.
+/// Without both, a tenth of a solve is spent on mapping pages and finding them. Reserves nothing where addresses or
+/// data of the process are limited. For glibc on Linux; does nothing elsewhere. Called at program start.
 void prepare_heap();
 
 /// "512 MiB", "1.5 GiB": three digits.

@@ -29,6 +29,9 @@ struct ContactState {
   bool untouched() const { return normal.pressure.size() == 0; }
 };
 
+/// Loads nearer to their limit than this are at it: a pressure balances its load to this part.
+inline constexpr double kAtLimit = 1e-12;
+
 /// A step's tangential problem, and the largest loads that its contact can carry.
 struct LoadStep {
   TangentialProblem problem;
@@ -36,8 +39,8 @@ struct LoadStep {
   LimitLoad limit;         ///< of the loads that the step imposes
   bool is_coulomb = true;  ///< the bound is mu p
 
-  /// Loads at the limit are not carried, nor up to the rounding with which the pressure balances its load.
-  bool carried() const { return limit.factor > 1.0 + 1e-12; }
+  /// False for loads beyond the limit, and at it.
+  bool carried() const { return limit.factor > 1.0 + kAtLimit; }
 };
 
 /// The change that a step of a scene brings to a contact under its pressure, on the model's grid.
