@@ -44,12 +44,12 @@ build: configure ## build everything, the program is build/slipstick
 	$(call build,all)
 
 report: configure ## compute the validation page and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
-	$(call build,slipstick)
+	$(call build,slipstick slipstick_python)
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
 gallery: configure ## make a page of every scene of the project, with an index, build/gallery/index.html (5 minutes; REPORT_OPTIONS="--quick": 3)
-	$(call build,slipstick)
+	$(call build,slipstick slipstick_python)
 	@$(BUILD)/slipstick report convergence/scenes/*.toml --output $(BUILD)/gallery $(REPORT_OPTIONS)
 
 report-pdf: configure ## print the page of `make report` to build/report/report.pdf (needs chromium-driver and python3-selenium)
