@@ -23,20 +23,20 @@ check() {  # <target> <targets that it builds>
 }
 configured() { [[ "$(cat "$CALLS")" == *"cmake --preset release"* ]]; }
 
-check report slipstick
+check report "slipstick slipstick_python"
 expect "make report configures what was never configured" configured
 touch "$build/build.ninja" "$build/not_built.txt"
-check report slipstick
+check report "slipstick slipstick_python"
 expect "make report does not configure again" not configured
 expect "everything is built" not says "NOT BUILT"
 echo "NOT BUILT: solves on several ranks, because of this test" > "$build/not_built.txt"
-check report slipstick
+check report "slipstick slipstick_python"
 expect "what is not built is said after building" says "cmake was run
 
 NOT BUILT: solves on several ranks, because of this test"
 expect "what setup does not install is not looked for again" not configured
 echo "NOT BUILT: certified digits: install libflint-dev (or run \`make setup\`)" > "$build/not_built.txt"
-check report slipstick
+check report "slipstick slipstick_python"
 expect "what setup installs is looked for again" configured
 check test tests
 expect "make test ends with the skipped tests" test "$(tail -n 2 "$folder/output" | tr '\n' ' ')" = "ctest was run python was run "
